@@ -1,0 +1,134 @@
+"""Everything this library raises on purpose.
+
+One root, `VisionRobotError`; below it `BadInput` for what the caller can mend.
+Every message says what is wrong, where, and how to mend it; the evidence is kept
+as attributes so that a caller can act on it without parsing text.
+"""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+__all__ = [
+    "BadCameraFile",
+    "BadInput",
+    "BadParameter",
+    "BoardNotFound",
+    "DegenerateViews",
+    "MissingOpenGL",
+    "MixedImageSizes",
+    "NoConvergence",
+    "NoImages",
+    "TooFewViews",
+    "UnreadableImage",
+    "UnwritableOutput",
+    "VisionRobotError",
+]
+
+
+class VisionRobotError(Exception):
+    """Root of all errors of this library."""
+
+
+class NoConvergence(VisionRobotError):
+    """An iteration ended without reaching its tolerance."""
+
+
+class MissingOpenGL(VisionRobotError):
+    """No OpenGL back end works on this machine."""
+
+    def __init__(self, tried: dict[str, str]):
+        self.tried = tried
+        reasons = "; ".join(f"{backend}: {why}" for backend, why in tried.items())
+        super().__init__(
+            f"no OpenGL back end can render ({reasons}): install one with "
+            "'apt-get install libegl1 libgl1-mesa-dri' or 'pip install --no-deps lavavu-osmesa'"
+        )
+
+
+class BadInput(VisionRobotError):
+    """The caller gave something that cannot be used and can mend it."""
+
+
+class BadParameter(BadInput):
+    """An argument has a value outside what is allowed."""
+
+    def __init__(self, name: str, value: object, allowed: str):
+        self.name, self.value, self.allowed = name, value, allowed
+        super().__init__(f"{name} is {value!r}: it must be {allowed}")
+
+
+class NoImages(BadInput):
+    """A path names no image."""
+
+    def __init__(self, paths: Iterable[object]):
+        self.paths = [str(path) for path in paths]
+        super().__init__(
+            f"no image found in {', '.join(self.paths) or 'an empty list'}: "
+            "give image files, a folder of images, a quoted pattern or a video"
+        )
+
+
+class UnreadableImage(BadInput):
+    """A file exists but holds no image that can be decoded."""
+
+    def __init__(self, path: object, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"{path} cannot be read as an image ({why}): remove or replace it")
+
+
+class MixedImageSizes(BadInput):
+    """Images of one camera differ in size."""
+
+    def __init__(self, first: object, size: tuple[int, int], other: object, other_size: tuple[int, int]):
+        self.size, self.other_size = size, other_size
+        super().__init__(
+            f"{other} is {other_size[0]}x{other_size[1]} px but {first} is {size[0]}x{size[1]} px: "
+            "one calibration needs images of one camera at one resolution"
+        )
+
+
+class BoardNotFound(BadInput):
+    """No image shows the board that was asked for."""
+
+    def __init__(self, images: int, wanted: str, seen: str | None = None):
+        self.images, self.wanted, self.seen = images, wanted, seen
+        hint = f"; a board of {seen} was seen: try --size {seen}" if seen else "; check --board and --size"
+        super().__init__(f"no {wanted} board found in {images} image(s){hint}")
+
+
+class TooFewViews(BadInput):
+    """Fewer usable views than a calibration needs."""
+
+    def __init__(self, usable: int, needed: int, given: int):
+        self.usable, self.needed, self.given = usable, needed, given
+        super().__init__(
+            f"{usable} usable view(s) of {given} given: at least {needed} are needed; "
+            "add images that show the whole board at different tilts"
+        )
+
+
+class DegenerateViews(BadInput):
+    """The views leave parameters undetermined."""
+
+    def __init__(self, undetermined: Sequence[str], why: str):
+        self.undetermined, self.why = tuple(undetermined), why
+        super().__init__(
+            f"{', '.join(undetermined)} cannot be known from these views ({why}): "
+            "add views in which the board is tilted by 20-60 degrees in different directions"
+        )
+
+
+class BadCameraFile(BadInput):
+    """A camera file is truncated, unknown or inconsistent."""
+
+    def __init__(self, path: object, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"{path} is not a camera file this tool can use: {why}")
+
+
+class UnwritableOutput(BadInput):
+    """An output cannot be written where it was asked for."""
+
+    def __init__(self, path: Path | str, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"cannot write {path} ({why}): choose another place with -o")

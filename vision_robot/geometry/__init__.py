@@ -1,0 +1,23 @@
+"""Rigid transforms, lenses, cameras and the work plane; numpy only."""
+
+from vision_robot.geometry.camera import Camera, pixel_grid
+from vision_robot.geometry.lens import LENSES, Lens, lens_named
+from vision_robot.geometry.plane import pixels_from_plane, plane_from_pixels, plane_homography
+from vision_robot.geometry.se3 import SE3, rotation_exp, rotation_log, skew
+from vision_robot.geometry.undistort import resampling_map
+
+__all__ = [
+    "LENSES",
+    "SE3",
+    "Camera",
+    "Lens",
+    "lens_named",
+    "pixel_grid",
+    "pixels_from_plane",
+    "plane_from_pixels",
+    "plane_homography",
+    "resampling_map",
+    "rotation_exp",
+    "rotation_log",
+    "skew",
+]
