@@ -10,6 +10,7 @@ from pathlib import Path
 
 __all__ = [
     "BadCameraFile",
+    "BadCornerFile",
     "BadInput",
     "BadParameter",
     "BoardNotFound",
@@ -112,10 +113,13 @@ class DegenerateViews(BadInput):
 
     def __init__(self, undetermined: Sequence[str], why: str):
         self.undetermined, self.why = tuple(undetermined), why
-        super().__init__(
-            f"{', '.join(undetermined)} cannot be known from these views ({why}): "
+        affine = {"fx", "fy", "cx", "cy", "skew"} & set(undetermined)
+        mend = (
             "add views in which the board is tilted by 20-60 degrees in different directions"
+            if affine
+            else "take a simpler --model or --fix them, or add views that reach the picture's corners"
         )
+        super().__init__(f"{', '.join(undetermined)} cannot be known from these views ({why}): {mend}")
 
 
 class BadCameraFile(BadInput):
@@ -124,6 +128,14 @@ class BadCameraFile(BadInput):
     def __init__(self, path: object, why: str):
         self.path, self.why = str(path), why
         super().__init__(f"{path} is not a camera file this tool can use: {why}")
+
+
+class BadCornerFile(BadInput):
+    """A text file of corners or board points cannot be used."""
+
+    def __init__(self, path: object, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"{path} cannot be used as corners: {why}")
 
 
 class UnwritableOutput(BadInput):

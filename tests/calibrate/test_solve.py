@@ -1,0 +1,102 @@
+"""`calibrate`: truth within its own sigma, honest covariance, words where it cannot know."""
+
+import numpy as np
+import pytest
+
+from tests.views import CAMERAS, Views, make_views
+from vision_robot.calibrate import Corners, calibrate
+from vision_robot.errors import BadParameter, DegenerateViews, TooFewViews
+
+SIZE = (1280, 960)
+
+
+def solve(views: Views, **options):
+    return calibrate(views.corners, views.board, SIZE, model=views.camera.model, **options)
+
+
+@pytest.mark.parametrize("model", CAMERAS)
+@pytest.mark.parametrize("seed", range(3))
+def test_every_parameter_is_within_five_sigma_of_the_truth(model, seed):
+    views = make_views(CAMERAS[model], 15, seed=seed)
+    result = solve(views)
+    error = dict(
+        zip(views.camera.parameter_names, result.camera.parameters - views.camera.parameters, strict=True)
+    )
+    assert {"fx", "fy", "cx", "cy"} <= set(result.sigma)
+    assert all(abs(error[name]) <= 5 * sigma for name, sigma in result.sigma.items())
+    assert result.rms_px == pytest.approx(0.2 * np.sqrt(2), rel=0.1)
+
+
+def test_the_covariance_is_the_spread_of_repeated_calibrations():
+    truth = make_views(CAMERAS["brown5"], 10, seed=0, noise_px=0.0)
+    rng = np.random.default_rng(1)
+    errors = []
+    for _ in range(150):
+        noisy = [
+            Corners(v.image, v.ids, v.pixels + 0.2 * rng.normal(size=v.pixels.shape)) for v in truth.corners
+        ]
+        errors.append(calibrate(noisy, truth.board, SIZE).camera.parameters - truth.camera.parameters)
+    result = solve(make_views(CAMERAS["brown5"], 10, seed=0))
+    free = np.array(result.free)
+    ratio = np.std(errors, axis=0)[free] / result.covariance.sigma[free]
+    assert (np.abs(ratio - 1) < 0.25).all(), ratio
+
+
+def test_skew_is_found_when_asked_for():
+    camera = CAMERAS["brown5"].with_parameters(
+        np.array([1000, 1010, 650, 470, 2.0, -0.28, 0.09, 1e-3, -5e-4, -0.01])
+    )
+    result = solve(make_views(camera, 15), skew=True)
+    assert abs(result.camera.skew - 2) < 5 * result.sigma["skew"]
+    assert solve(make_views(camera, 15)).camera.skew == 0
+
+
+def test_fixed_coefficients_stay_zero_and_get_no_sigma():
+    result = solve(make_views(CAMERAS["brown5"], 8), fixed=("p1", "p2", "k3"))
+    assert result.camera.distortion[2:] == (0, 0, 0)
+    assert "k3" not in result.sigma
+    with pytest.raises(BadParameter, match="k1, k2"):
+        solve(make_views(CAMERAS["brown5"], 8), fixed=("k9",))
+
+
+@pytest.mark.parametrize("tilt", [0.0, 1e-3, 1e-2])
+def test_parallel_views_are_refused_by_name(tilt):
+    with pytest.raises(DegenerateViews) as caught:
+        solve(make_views(CAMERAS["brown5"], 10, tilt=tilt))
+    assert {"fx", "fy"} <= set(caught.value.undetermined)
+
+
+def test_too_few_views_say_how_many():
+    views = make_views(CAMERAS["brown5"], 2)
+    with pytest.raises(TooFewViews, match="2 usable view"):
+        solve(views)
+
+
+def test_a_view_of_one_line_is_left_out_with_the_reason():
+    views = make_views(CAMERAS["brown5"], 6)
+    first = views.corners[0]
+    views.corners[0] = Corners(first.image, first.ids[:11], first.pixels[:11])
+    result = solve(views)
+    assert [(r.image, "one line" in r.reason) for r in result.rejected] == [("view 0", True)]
+
+
+def test_the_unit_of_the_board_only_scales_the_poses():
+    views = make_views(CAMERAS["brown5"], 8)
+    metres, inches = solve(views), calibrate(views.corners, views.board / 0.0254, SIZE)
+    difference = inches.camera.parameters - metres.camera.parameters
+    assert (np.abs(difference) <= 0.01 * metres.covariance.sigma).all()
+    np.testing.assert_allclose(
+        inches.cam_from_board.translation * 0.0254, metres.cam_from_board.translation, rtol=1e-4, atol=1e-6
+    )
+
+
+def test_views_may_show_parts_of_the_board():
+    views = make_views(CAMERAS["brown5"], 12)
+    rng = np.random.default_rng(0)
+    partial = []
+    for view in views.corners:
+        keep = np.sort(rng.choice(88, 50, replace=False))
+        partial.append(Corners(view.image, view.ids[keep], view.pixels[keep]))
+    result = calibrate(partial, views.board, SIZE)
+    error = np.abs(result.camera.parameters - views.camera.parameters)[np.array(result.free)]
+    assert (error < 5 * result.covariance.sigma[np.array(result.free)]).all()

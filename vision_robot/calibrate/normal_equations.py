@@ -1,0 +1,153 @@
+"""The normal equations of a calibration, built block by block.
+
+Cost: half the sum of squared, weighted reprojection errors. Unknowns: the free shared
+parameters (intrinsics, then the board's warp) and a pose for each view, perturbed as R <- Exp(w) R, t <- t + dt in
+the order (w, dt). A view's errors depend on no other view's pose, so the Gauss-Newton
+matrix has an arrow shape, and only its shared block, its border and its 6x6 diagonal
+blocks are kept (Triggs et al. 2000, section 6).
+"""
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from vision_robot.calibrate.observations import Observations
+from vision_robot.calibrate.state import State
+from vision_robot.calibrate.warp import Warp
+from vision_robot.geometry import SE3
+from vision_robot.types import Array, Bool, Float
+
+__all__ = ["NormalEquations", "normal_equations", "residuals"]
+
+BLOCK_POINTS = 4096
+"""Corners handled at once: their Jacobian then stays in the second-level cache."""
+
+THREADS_FROM = 8 * BLOCK_POINTS
+"""Corners from which it pays to share the blocks between two threads."""
+
+
+@dataclass(frozen=True)
+class NormalEquations:
+    """``[[shared, border], [border^T, diag(pose)]]`` and the gradient."""
+
+    cost: float
+    shared: Float[Array, "p p"]
+    border: Float[Array, "views p 6"]
+    pose: Float[Array, "views 6 6"]
+    shared_gradient: Float[Array, "p"]
+    pose_gradient: Float[Array, "views 6"]
+
+
+def residuals(state: State, seen: Observations) -> Float[Array, "views 2 n"]:
+    """Projected minus seen [px]; zero in the padding."""
+    camera, views, n = state.camera, *seen.ids.shape
+    pose = state.cam_from_board
+    points = pose.rotation @ _on_board(state.warp, seen) + pose.translation[..., None]
+    distorted = camera.lens.distort(points.transpose(1, 0, 2).reshape(3, -1), camera.distortion)
+    x, y = distorted.reshape(2, views, n)
+    error = np.stack([camera.fx * x + camera.skew * y + camera.cx, camera.fy * y + camera.cy], axis=1)
+    return np.where(seen.present[:, None], error - seen.pixels, 0.0)
+
+
+def normal_equations(state: State, seen: Observations, free: Bool[Array, "p"]) -> NormalEquations:
+    """Evaluate cost, gradient and Gauss-Newton matrix; an infinite cost where a board lies behind.
+
+    `free` marks the shared parameters to estimate.
+    """
+    views, n = seen.ids.shape
+    p = int(free.sum())
+    full = np.empty((views, p + 7, p + 7))
+    step = max(1, BLOCK_POINTS // max(n, 1))
+    blocks = [slice(start, min(start + step, views)) for start in range(0, views, step)]
+
+    def evaluate(some: list[slice]) -> bool:
+        rows = np.empty((min(step, views), p + 7, 2 * n))
+        for block in some:
+            J = rows[: block.stop - block.start]
+            pose = SE3(state.cam_from_board.rotation[block], state.cam_from_board.translation[block])
+            if not _fill_rows(J, State(state.camera, pose, state.warp), seen[block], free):
+                return False
+            np.matmul(J, J.transpose(0, 2, 1), out=full[block])
+        return True
+
+    if seen.ids.size < THREADS_FROM:
+        visible = evaluate(blocks)
+    else:
+        visible = all(_threads().map(evaluate, (blocks[::2], blocks[1::2])))
+    if not visible:
+        full[...] = 0
+    total = full[:, :p].sum(axis=0)
+    pose_part = slice(p, p + 6)
+    return NormalEquations(
+        cost=0.5 * float(full[:, -1, -1].sum()) if visible else np.inf,
+        shared=total[:, :p],
+        border=full[:, :p, pose_part],
+        pose=full[:, pose_part, pose_part],
+        shared_gradient=total[:, -1],
+        pose_gradient=full[:, pose_part, -1],
+    )
+
+
+@cache
+def _threads() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(2)
+
+
+def _on_board(warp: Warp, seen: Observations) -> Float[Array, "views 3 n"]:
+    """Where the board's points really are, in the board frame."""
+    if not len(warp):
+        return seen.points
+    return seen.points + warp.displacement.T[:, seen.ids].transpose(1, 0, 2)
+
+
+def _fill_rows(J: Float[Array, "views c 2n"], state: State, seen: Observations, free: Array) -> bool:
+    """Write the weighted Jacobian (shared, w, t) and residual as rows; False if a point is behind."""
+    camera, views, n = state.camera, *seen.ids.shape
+    rotation = state.cam_from_board.rotation
+    arm = rotation @ _on_board(state.warp, seen)  # board points turned, from the board's origin
+    in_cam = arm + state.cam_from_board.translation[..., None]
+    in_cam = in_cam.transpose(1, 0, 2).reshape(3, -1)
+    if camera.lens.field(in_cam).max(initial=0) == np.inf:
+        return False
+    distorted, lens = camera.lens.jacobian(in_cam, camera.distortion)
+    x, y = distorted.reshape(2, views, n)
+    lens = lens.reshape(2, -1, views, n)
+    u, v = slice(0, n), slice(n, 2 * n)
+    fx, fy, skew = camera.fx, camera.fy, camera.skew
+
+    affine = ((x, 0), (0, y), (1, 0), (0, 1), (y, 0))
+    intrinsics = np.flatnonzero(free[: 5 + len(camera.distortion)])
+    warps = np.flatnonzero(free[5 + len(camera.distortion) :])
+    for row, column in enumerate(intrinsics):
+        if column < 5:
+            J[:, row, u], J[:, row, v] = affine[column]
+        else:
+            np.multiply(lens[0, column - 2], fx, out=J[:, row, u])
+            if skew:
+                J[:, row, u] += skew * lens[1, column - 2]
+            np.multiply(lens[1, column - 2], fy, out=J[:, row, v])
+
+    row = len(intrinsics) + len(warps)
+    for axis in range(3):
+        np.multiply(lens[0, axis], fx, out=J[:, row + 3 + axis, u])
+        if skew:
+            J[:, row + 3 + axis, u] += skew * lens[1, axis]
+        np.multiply(lens[1, axis], fy, out=J[:, row + 3 + axis, v])
+    # d(R X)/dw = -[R X]_x, so the row a of the point's Jacobian becomes (R X) x a.
+    for half in (u, v):
+        a = [J[:, row + 3 + axis, half] for axis in range(3)]
+        q = [arm[:, axis] for axis in range(3)]
+        for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+            J[:, row + i, half] = q[j] * a[k] - q[k] * a[j]
+        if len(warps):
+            # A board point moves with its warp, turned into the camera frame.
+            in_board = np.einsum("avn,vab->bvn", np.stack(a), rotation)
+            for i, k in enumerate(warps):
+                field = state.warp.basis[k][:, seen.ids]
+                J[:, len(intrinsics) + i, half] = np.einsum("bvn,bvn->vn", in_board, field)
+    np.add(fx * x + skew * y, camera.cx - seen.pixels[:, 0], out=J[:, -1, u])
+    np.add(fy * y, camera.cy - seen.pixels[:, 1], out=J[:, -1, v])
+    J.reshape(views, -1, 2, n)[...] *= seen.weight[:, None, None, :]
+    return True
