@@ -6,6 +6,7 @@ import pytest
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate.normal_equations import normal_equations, residuals
 from vision_robot.calibrate.observations import Observations
+from vision_robot.calibrate.problem import Problem
 from vision_robot.calibrate.state import State
 from vision_robot.calibrate.warp import Warp
 from vision_robot.geometry import SE3, rotation_exp
@@ -34,7 +35,7 @@ def test_against_a_numeric_jacobian(model, skew):
     seen = seen.with_weight(seen.weight * rng.uniform(0.5, 2, seen.weight.shape))
     free = np.ones(len(camera.parameters), bool)
     free[4] = skew
-    found = normal_equations(State(camera, views.cam_from_board, FLAT), seen, free)
+    found = normal_equations(State(camera, views.cam_from_board, FLAT), Problem.plain(seen, free))
 
     def weighted(step):
         camera_, poses_ = moved(camera, views.cam_from_board, free, step)
@@ -67,9 +68,9 @@ def test_blocks_add_up_to_the_whole(monkeypatch):
     views = make_views(CAMERAS["brown5"], 7, seed=2)
     seen = Observations.of(views.corners, views.board)
     free = np.ones(10, bool)
-    whole = normal_equations(State(views.camera, views.cam_from_board, FLAT), seen, free)
+    whole = normal_equations(State(views.camera, views.cam_from_board, FLAT), Problem.plain(seen, free))
     monkeypatch.setattr("vision_robot.calibrate.normal_equations.BLOCK_POINTS", 200)
-    parts = normal_equations(State(views.camera, views.cam_from_board, FLAT), seen, free)
+    parts = normal_equations(State(views.camera, views.cam_from_board, FLAT), Problem.plain(seen, free))
     np.testing.assert_allclose(parts.shared, whole.shared, rtol=1e-12)
     np.testing.assert_allclose(parts.pose, whole.pose, rtol=1e-12)
 
@@ -90,4 +91,7 @@ def test_a_board_behind_the_camera_costs_everything():
     views = make_views(CAMERAS["brown5"], 3, seed=4)
     seen = Observations.of(views.corners, views.board)
     behind = SE3(views.cam_from_board.rotation, -views.cam_from_board.translation)
-    assert normal_equations(State(views.camera, behind, FLAT), seen, np.ones(10, bool)).cost == np.inf
+    assert (
+        normal_equations(State(views.camera, behind, FLAT), Problem.plain(seen, np.ones(10, bool))).cost
+        == np.inf
+    )

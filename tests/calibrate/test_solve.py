@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from tests.views import CAMERAS, Views, make_views
-from vision_robot.calibrate import Corners, calibrate
+from vision_robot.calibrate import Corners, Settings, calibrate
 from vision_robot.errors import BadParameter, DegenerateViews, TooFewViews
 
 SIZE = (1280, 960)
 
 
 def solve(views: Views, **options):
-    return calibrate(views.corners, views.board, SIZE, model=views.camera.model, **options)
+    return calibrate(views.corners, views.board, SIZE, Settings(model=views.camera.model, **options))
 
 
 @pytest.mark.parametrize("model", CAMERAS)
@@ -52,11 +52,11 @@ def test_skew_is_found_when_asked_for():
 
 
 def test_fixed_coefficients_stay_zero_and_get_no_sigma():
-    result = solve(make_views(CAMERAS["brown5"], 8), fixed=("p1", "p2", "k3"))
+    result = solve(make_views(CAMERAS["brown5"], 8), fixed={"p1": 0, "p2": 0, "k3": 0})
     assert result.camera.distortion[2:] == (0, 0, 0)
     assert "k3" not in result.sigma
-    with pytest.raises(BadParameter, match="k1, k2"):
-        solve(make_views(CAMERAS["brown5"], 8), fixed=("k9",))
+    with pytest.raises(BadParameter, match="skew, k1, k2"):
+        solve(make_views(CAMERAS["brown5"], 8), fixed={"k9": 0})
 
 
 @pytest.mark.parametrize("tilt", [0.0, 1e-3, 1e-2])
@@ -100,3 +100,60 @@ def test_views_may_show_parts_of_the_board():
     result = calibrate(partial, views.board, SIZE)
     error = np.abs(result.camera.parameters - views.camera.parameters)[np.array(result.free)]
     assert (error < 5 * result.covariance.sigma[np.array(result.free)]).all()
+
+
+def test_a_wrong_corner_is_named_and_left_out():
+    views = make_views(CAMERAS["brown5"], 10, seed=5)
+    spoiled = views.corners[3]
+    pixels = spoiled.pixels.copy()
+    pixels[17] += [9.0, -4.0]
+    views.corners[3] = Corners(spoiled.image, spoiled.ids, pixels)
+    result = solve(views)
+    assert [(r.image, r.corner) for r in result.rejected] == [("view 3", 17)]
+    assert result.rms_px == pytest.approx(0.2 * np.sqrt(2), rel=0.1)
+    assert 17 not in result.corners[3].ids
+    assert solve(views, robust=False).rms_px > 1.15 * result.rms_px
+
+
+def test_a_wrong_view_is_named_and_left_out():
+    """A view of corners in the wrong order pulls on every parameter, but not past the robust fit."""
+    views = make_views(CAMERAS["brown5"], 12, seed=6)
+    spoiled = views.corners[4]
+    rng = np.random.default_rng(0)
+    pixels = spoiled.pixels + rng.normal(size=spoiled.pixels.shape) * 15
+    views.corners[4] = Corners(spoiled.image, spoiled.ids, pixels)
+    result = solve(views)
+    assert [(r.image, r.corner) for r in result.rejected] == [("view 4", None)]
+    assert len(result.corners) == 11
+    assert result.rms_px == pytest.approx(0.2 * np.sqrt(2), rel=0.1)
+
+
+def test_clean_views_lose_nothing():
+    for seed in range(5):
+        assert solve(make_views(CAMERAS["brown5"], 10, seed=seed)).rejected == ()
+
+
+def test_a_prior_counts_as_one_more_measurement():
+    views = make_views(CAMERAS["brown5"], 6, seed=7)
+    free = solve(views)
+    sigma = free.sigma["cx"]
+    pulled = solve(views, priors={"cx": (free.camera.cx + sigma, sigma)})
+    assert pulled.camera.cx == pytest.approx(free.camera.cx + sigma / 2, abs=0.05 * sigma)
+    assert pulled.sigma["cx"] == pytest.approx(sigma / np.sqrt(2), rel=0.05)
+    firm = solve(views, priors={"cx": (600.0, 1e-6)})
+    assert firm.camera.cx == pytest.approx(600.0, abs=1e-4)
+
+
+def test_a_parameter_is_fixed_at_its_value():
+    result = solve(make_views(CAMERAS["brown5"], 6), fixed={"cx": 650.0, "cy": 470.0})
+    assert (result.camera.cx, result.camera.cy) == (650, 470)
+    assert "cx" not in result.sigma
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"priors": {"cx": (1, 0)}}, {"fixed": {"cx": 1}, "priors": {"cx": (1, 1)}}, {"warp": 99}, {"warp": -1}],
+)
+def test_settings_that_make_no_sense_are_refused(options):
+    with pytest.raises(BadParameter):
+        Settings(**options)

@@ -1,12 +1,12 @@
 """How well a calibration knows what it says."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from vision_robot.calibrate.normal_equations import NormalEquations
 from vision_robot.calibrate.refine import schur_complement
+from vision_robot.calibrate.state import State
 from vision_robot.types import Array, Bool, Float
 
 __all__ = ["Covariance", "covariance"]
@@ -19,30 +19,36 @@ NULL = 3e-14
 class Covariance:
     """Joint covariance of the shared parameters and each view's pose.
 
-    `intrinsics` (p, p) follows Camera.parameters, with zeros for fixed ones; `poses`
-    (views, 6, 6) is that of the perturbation (w [rad], dt [m]) with R <- Exp(w) R and
-    t <- t + dt; `cross` (views, p, 6) ties the two. Scaled by the noise found in the
-    residuals.
+    `shared` (s, s) follows Camera.parameters, then the board's warp, with zeros for what
+    was fixed; `poses` (views, 6, 6) is that of the perturbation (w [rad], dt [m]) with
+    R <- Exp(w) R and t <- t + dt; `cross` (views, s, 6) ties the two. Scaled by the noise
+    found in the residuals.
     """
 
-    intrinsics: Float[Array, "p p"]
+    shared: Float[Array, "s s"]
     poses: Float[Array, "views 6 6"]
-    cross: Float[Array, "views p 6"]
+    cross: Float[Array, "views s 6"]
+    intrinsic_count: int
     undetermined: tuple[str, ...] = ()
     """Names of parameters that the views leave free; their entries mean nothing."""
 
     @property
+    def intrinsics(self) -> Float[Array, "p p"]:
+        """The part of Camera.parameters."""
+        return self.shared[: self.intrinsic_count, : self.intrinsic_count]
+
+    @property
     def sigma(self) -> Float[Array, "p"]:
-        """One standard deviation of each intrinsic parameter."""
+        """One standard deviation of each of Camera.parameters."""
         return np.sqrt(np.diag(self.intrinsics))
 
 
 def covariance(
-    equations: NormalEquations, free: Bool[Array, "p"], names: Sequence[str], variance: float
+    equations: NormalEquations, free: Bool[Array, "s"], state: State, variance: float
 ) -> Covariance:
     """Inverse of the Gauss-Newton matrix times the variance of unit weight (Triggs et al. 2000, app. B).
 
-    `names` are those of all p parameters. Directions in the null space are left out of
+    Directions in the null space are left out of
     the inverse, and the parameters that take part in them are named, not numbered.
     """
     S = schur_complement(equations)
@@ -64,5 +70,6 @@ def covariance(
     full[np.ix_(free, free)] = inverse
     full_cross = np.zeros((views, p, 6))
     full_cross[:, free] = cross
-    lost = tuple(names[int(i)] for i in np.flatnonzero(free)[involved])
-    return Covariance(variance * full, variance * poses, variance * full_cross, lost)
+    lost = tuple(state.shared_names[int(i)] for i in np.flatnonzero(free)[involved])
+    count = len(state.camera.parameters)
+    return Covariance(variance * full, variance * poses, variance * full_cross, count, lost)

@@ -1,7 +1,8 @@
 """The normal equations of a calibration, built block by block.
 
 Cost: half the sum of squared, weighted reprojection errors. Unknowns: the free shared
-parameters (intrinsics, then the board's warp) and a pose for each view, perturbed as R <- Exp(w) R, t <- t + dt in
+parameters (intrinsics, then the board's warp) and a pose for each view, perturbed as
+R <- Exp(w) R, t <- t + dt in
 the order (w, dt). A view's errors depend on no other view's pose, so the Gauss-Newton
 matrix has an arrow shape, and only its shared block, its border and its 6x6 diagonal
 blocks are kept (Triggs et al. 2000, section 6).
@@ -14,10 +15,11 @@ from functools import cache
 import numpy as np
 
 from vision_robot.calibrate.observations import Observations
+from vision_robot.calibrate.problem import Problem
 from vision_robot.calibrate.state import State
 from vision_robot.calibrate.warp import Warp
 from vision_robot.geometry import SE3
-from vision_robot.types import Array, Bool, Float
+from vision_robot.types import Array, Float
 
 __all__ = ["NormalEquations", "normal_equations", "residuals"]
 
@@ -51,11 +53,9 @@ def residuals(state: State, seen: Observations) -> Float[Array, "views 2 n"]:
     return np.where(seen.present[:, None], error - seen.pixels, 0.0)
 
 
-def normal_equations(state: State, seen: Observations, free: Bool[Array, "p"]) -> NormalEquations:
-    """Evaluate cost, gradient and Gauss-Newton matrix; an infinite cost where a board lies behind.
-
-    `free` marks the shared parameters to estimate.
-    """
+def normal_equations(state: State, problem: Problem) -> NormalEquations:
+    """Evaluate cost, gradient and Gauss-Newton matrix; an infinite cost where a board lies behind."""
+    seen, free = problem.seen, problem.free
     views, n = seen.ids.shape
     p = int(free.sum())
     full = np.empty((views, p + 7, p + 7))
@@ -80,12 +80,15 @@ def normal_equations(state: State, seen: Observations, free: Bool[Array, "p"]) -
         full[...] = 0
     total = full[:, :p].sum(axis=0)
     pose_part = slice(p, p + 6)
+    known = problem.prior_information[free]
+    off = (state.shared_parameters - problem.prior_mean)[free]
+    cost = float(full[:, -1, -1].sum() + known @ off**2) / 2
     return NormalEquations(
-        cost=0.5 * float(full[:, -1, -1].sum()) if visible else np.inf,
-        shared=total[:, :p],
+        cost=cost if visible else np.inf,
+        shared=total[:, :p] + np.diag(known),
         border=full[:, :p, pose_part],
         pose=full[:, pose_part, pose_part],
-        shared_gradient=total[:, -1],
+        shared_gradient=total[:, -1] + known * off,
         pose_gradient=full[:, pose_part, -1],
     )
 

@@ -60,3 +60,9 @@ class Observations:
     def with_weight(self, weight: Float[Array, "views n"]) -> "Observations":
         """The same corners with other weights."""
         return Observations(self.points, self.pixels, weight, self.ids)
+
+    def keeping(self, keep: Bool[Array, "views n"]) -> "Observations":
+        """The corners under the mask; the others become padding."""
+        return Observations(
+            self.points, self.pixels, np.where(keep, self.weight, 0.0), np.where(keep, self.ids, -1)
+        )

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from vision_robot.calibrate.normal_equations import NormalEquations, normal_equations
-from vision_robot.calibrate.observations import Observations
+from vision_robot.calibrate.problem import Problem
 from vision_robot.calibrate.state import State
 from vision_robot.errors import NoConvergence
-from vision_robot.types import Array, Bool, Float
+from vision_robot.types import Array, Float
 
 __all__ = ["Refinement", "arrow_solve", "refine", "schur_complement"]
 
@@ -28,32 +28,30 @@ class Refinement:
 
 def refine(
     state: State,
-    seen: Observations,
-    free: Bool[Array, "p"],
+    problem: Problem,
     *,
     max_iterations: int = 100,
     tolerance: float = 3e-3,
 ) -> Refinement:
-    """Minimise the reprojection error over the `free` shared parameters and all poses.
+    """Minimise the reprojection error over the free shared parameters and all poses.
 
     Ends when the next step would move the estimate by less than `tolerance` of its own
     standard deviation, all parameters together (damping after Nielsen 1999). Raises
     NoConvergence when that has not come about after `max_iterations`.
     """
-    equations = normal_equations(state, seen, free)
-    measured = 2 * int(np.count_nonzero(seen.weight))
-    dof = max(measured - int(free.sum()) - 6 * seen.views, 1)
+    equations = normal_equations(state, problem)
+    dof = max(problem.degrees_of_freedom, 1)
     damping, growth = 1e-8, 2.0
     for iteration in range(max_iterations):
         variance = 2 * equations.cost / dof
-        step = _step(state, equations, free, damping)
+        step = _step(state, equations, problem.free, damping)
         if step is not None:
             candidate, predicted = step
             # 2 predicted = step^T H step, the length of the step measured in standard deviations.
             settled = 2 * predicted <= tolerance**2 * variance or variance <= EXACT_PX**2
             if settled and damping < 1e-2:
                 return Refinement(state, equations, iteration)
-            trial = normal_equations(candidate, seen, free)
+            trial = normal_equations(candidate, problem)
             gained = equations.cost - trial.cost
             if gained > 0:
                 state, equations = candidate, trial

@@ -6,8 +6,10 @@ import numpy as np
 
 from vision_robot.calibrate.corners import Corners
 from vision_robot.calibrate.covariance import Covariance
+from vision_robot.calibrate.settings import Settings
+from vision_robot.calibrate.warp import Warp
 from vision_robot.geometry import SE3, Camera
-from vision_robot.types import Array, Float
+from vision_robot.types import Array, Bool, Float
 
 __all__ = ["CalibrationResult", "Rejected"]
 
@@ -18,6 +20,8 @@ class Rejected:
 
     image: str
     reason: str
+    corner: int | None = None
+    """Id of the corner; None for the whole view."""
 
 
 @dataclass(frozen=True)
@@ -25,17 +29,23 @@ class CalibrationResult:
     """A calibrated camera with everything needed to judge it.
 
     `residuals` holds projected minus seen [px] of each view's corners, (n, 2) in the
-    order of `corners`; `free` tells which of Camera.parameters were estimated.
+    order of `corners`; `warp` how the board departs from its drawing.
     """
 
     camera: Camera
     cam_from_board: SE3
+    warp: Warp
     corners: tuple[Corners, ...]
     residuals: tuple[Float[Array, "n 2"], ...]
     covariance: Covariance
-    free: tuple[bool, ...]
+    settings: Settings
     rejected: tuple[Rejected, ...] = ()
     iterations: int = 0
+
+    @property
+    def free(self) -> Bool[Array, "p"]:
+        """Which of Camera.parameters were estimated."""
+        return self.settings.free
 
     @property
     def rms_px(self) -> float:
@@ -55,7 +65,13 @@ class CalibrationResult:
     @property
     def degrees_of_freedom(self) -> int:
         """Measured numbers less estimated ones."""
-        return 2 * self.corner_count - sum(self.free) - 6 * len(self.corners)
+        estimated = int(self.free.sum()) + len(self.warp) + 6 * len(self.corners)
+        return 2 * self.corner_count + len(self.settings.priors) - estimated
+
+    @property
+    def noise_px(self) -> float:
+        """Standard deviation of a corner per axis that the residuals tell [px]."""
+        return float(np.sqrt(np.sum(np.concatenate(self.residuals) ** 2) / max(self.degrees_of_freedom, 1)))
 
     @property
     def sigma(self) -> dict[str, float]:

@@ -5,35 +5,36 @@ from collections.abc import Sequence
 import numpy as np
 
 from vision_robot.calibrate.corners import Corners
-from vision_robot.calibrate.covariance import Covariance, covariance
+from vision_robot.calibrate.identifiability import identified
 from vision_robot.calibrate.normal_equations import residuals
 from vision_robot.calibrate.observations import Observations
+from vision_robot.calibrate.outliers import explained
+from vision_robot.calibrate.problem import Problem
 from vision_robot.calibrate.refine import Refinement, refine
 from vision_robot.calibrate.result import CalibrationResult, Rejected
-from vision_robot.calibrate.start import poses_from_bearings, start
+from vision_robot.calibrate.settings import Settings
+from vision_robot.calibrate.settle import settle
 from vision_robot.calibrate.state import State
 from vision_robot.calibrate.warp import Warp
-from vision_robot.errors import BadParameter, DegenerateViews, NoConvergence, TooFewViews
-from vision_robot.geometry import SE3, lens_named
-from vision_robot.geometry.camera import AFFINE_NAMES
+from vision_robot.errors import TooFewViews
 from vision_robot.types import Array, Bool, Float
 
 __all__ = ["calibrate"]
 
-VIEWS_FOR_START = 40
 FEWEST_VIEWS = 3
 FEWEST_CORNERS = 6
 """A pose takes six of a view's measured numbers; a view must leave some over."""
+
+TYPICAL_NOISE_PX = 0.2
+"""Weighs priors against corners until the residuals tell the noise."""
 
 
 def calibrate(
     corners: Sequence[Corners],
     board_points: Float[Array, "m 3"],
     size: tuple[int, int],
+    settings: Settings | None = None,
     *,
-    model: str = "brown5",
-    skew: bool = False,
-    fixed: Sequence[str] = (),
     rejected: Sequence[Rejected] = (),
 ) -> CalibrationResult:
     """Calibrate one camera from corners seen on a planar board.
@@ -42,9 +43,7 @@ def calibrate(
         corners: One entry for each picture in which the board was found.
         board_points: Board points (m, 3) [m] in the board frame, z = 0.
         size: Width and height of the pictures [px].
-        model: Lens model: pinhole, brown5, brown8 or fisheye.
-        skew: Estimate the skew of the pixel axes too.
-        fixed: Names of lens coefficients to hold at zero.
+        settings: Which camera is fitted, and how; `Settings()` where left out.
         rejected: Pictures already left out, carried into the result.
 
     Raises:
@@ -52,48 +51,45 @@ def calibrate(
         DegenerateViews: The views leave parameters undetermined; they are named.
         NoConvergence: The descent did not settle.
     """
-    usable, seen, left_out = _usable(corners, board_points)
-    rejected = [*rejected, *left_out]
-    if len(usable) < FEWEST_VIEWS:
-        raise TooFewViews(len(usable), FEWEST_VIEWS, len(corners) + len(rejected) - len(left_out))
-    free = _free(model, skew, fixed)
-    warp = Warp.none(len(board_points))
-    end = _settle(seen, size, free, model=model, skew=skew, warp=warp)
-    uncertainty = _known(end, seen, free)
-    errors = residuals(end.state, seen)
+    settings = settings or Settings()
+    given = len(corners) + len(rejected)
+    views, seen, left_out = _usable(corners, board_points)
+    if len(views) < FEWEST_VIEWS:
+        raise TooFewViews(len(views), FEWEST_VIEWS, given)
+    warp = Warp.smooth(board_points, settings.warp)
+    problem = _problem(seen, settings, warp, TYPICAL_NOISE_PX)
+    end = settle(problem, size, settings, warp)
+    if settings.robust:
+        end, problem, views, outliers = _without_outliers(end, problem, views)
+        left_out += outliers
+        if len(views) < FEWEST_VIEWS:
+            raise TooFewViews(len(views), FEWEST_VIEWS, given)
+    if settings.priors:
+        noise = float(np.sqrt(2 * end.equations.cost / max(problem.degrees_of_freedom, 1)))
+        problem = _problem(problem.seen, settings, warp, max(noise, 1e-6))
+        end = refine(end.state, problem)
+    known = identified(end, problem)
+    errors, present = residuals(end.state, problem.seen), problem.seen.present
     return CalibrationResult(
         camera=end.state.camera,
         cam_from_board=end.state.cam_from_board,
-        corners=tuple(usable),
-        residuals=tuple(e[:, p].T for e, p in zip(errors, seen.present, strict=True)),
-        covariance=uncertainty,
-        free=tuple(bool(f) for f in free),
-        rejected=tuple(rejected),
+        warp=end.state.warp,
+        corners=tuple(_kept(view, used) for view, used in zip(views, problem.seen.ids, strict=True)),
+        residuals=tuple(e[:, p].T for e, p in zip(errors, present, strict=True)),
+        covariance=known,
+        settings=settings,
+        rejected=(*rejected, *left_out),
         iterations=end.iterations,
     )
 
 
-def _settle(
-    seen: Observations, size: tuple[int, int], free: Array, *, model: str, skew: bool, warp: Warp
-) -> Refinement:
-    """From nothing to the minimum.
-
-    A large set is settled on some of its views first: all the steps but the last few are
-    then cheap.
-    """
-    few = seen
-    if seen.views > 2 * VIEWS_FOR_START:
-        few = seen[np.linspace(0, seen.views - 1, VIEWS_FOR_START).astype(int)]
-    state = start(few, size, model=model, skew=skew, warp=warp)
-    try:
-        end = _refine_in_stages(state, few, free)
-    except NoConvergence:
-        _refuse_parallel(state.cam_from_board)
-        raise
-    if few is seen:
-        return end
-    camera = end.state.camera
-    return refine(State(camera, poses_from_bearings(camera, seen), end.state.warp), seen, free)
+def _problem(seen: Observations, settings: Settings, warp: Warp, noise_px: float) -> Problem:
+    problem = Problem.plain(seen, np.concatenate([settings.free, np.ones(len(warp), dtype=bool)]))
+    for name, (mean, sigma) in settings.priors.items():
+        i = settings.names.index(name)
+        problem.prior_mean[i] = mean
+        problem.prior_information[i] = (noise_px / sigma) ** 2
+    return problem
 
 
 def _usable(
@@ -116,77 +112,45 @@ def _usable(
         if not is_wide:
             rejected.append(Rejected(view.image, "all corners lie on one line of the board"))
     kept = [view for view, is_wide in zip(kept, wide, strict=True) if is_wide]
-    return kept, seen[wide] if not wide.all() else seen, rejected
+    return kept, seen if wide.all() else seen[wide], rejected
 
 
-def _free(model: str, skew: bool, fixed: Sequence[str]) -> Bool[Array, "p"]:
-    names = lens_named(model).coefficient_names
-    for name in fixed:
-        if name not in names:
-            raise BadParameter("fixed parameter", name, f"one of {', '.join(names) or 'none for pinhole'}")
-    return np.array([True] * 4 + [skew] + [name not in fixed for name in names])
+def _without_outliers(
+    end: Refinement, problem: Problem, views: list[Corners]
+) -> tuple[Refinement, Problem, list[Corners], list[Rejected]]:
+    """Leave out what a robust fit cannot explain, until all that is left is explained."""
+    rejected: list[Rejected] = []
+    for _ in range(10):
+        seen = problem.seen
+        keep = explained(end.state, problem)
+        if (keep == seen.present).all():
+            break
+        rejected += _named(views, seen, keep)
+        alive = keep.any(axis=1)
+        views = [view for view, is_alive in zip(views, alive, strict=True) if is_alive]
+        if len(views) < FEWEST_VIEWS:
+            break
+        problem = problem.of(seen.keeping(keep)[alive])
+        state = State(end.state.camera, end.state.cam_from_board[alive], end.state.warp)
+        end = refine(state, problem)
+    return end, problem, views, rejected
 
 
-def _refine_in_stages(state: State, seen: Observations, free: Array) -> Refinement:
-    """Refine all at once; where that fails, first without the lens, then with it."""
-    try:
-        return refine(state, seen, free)
-    except NoConvergence:
-        affine = free & (np.arange(len(free)) < 5)
-        few = affine | (free & (np.arange(len(free)) < 7))
-        for stage in (affine, few):
-            state = refine(state, seen, stage, tolerance=0.1).state
-        return refine(state, seen, free, max_iterations=300)
+def _named(views: list[Corners], seen: Observations, keep: Bool[Array, "views n"]) -> list[Rejected]:
+    """The reasons, per view and per corner."""
+    rejected = []
+    for view, ids, present, kept in zip(views, seen.ids, seen.present, keep, strict=True):
+        lost = ids[present & ~kept]
+        if not kept.any():
+            reason = "too many of its corners lie where no pose of the board explains them"
+            rejected.append(Rejected(view.image, reason))
+        else:
+            reason = "it lies farther off than noise explains"
+            rejected += [Rejected(view.image, reason, corner=int(i)) for i in lost]
+    return rejected
 
 
-def _known(end: Refinement, seen: Observations, free: Array) -> Covariance:
-    """The covariance, or DegenerateViews naming what the views cannot tell."""
-    dof = 2 * int(seen.present.sum()) - int(free.sum()) - 6 * seen.views
-    variance = 2 * end.equations.cost / max(dof, 1)
-    known = covariance(end.equations, free, end.state.shared_names, variance)
-    if set(known.undetermined) & set(AFFINE_NAMES):
-        raise DegenerateViews(known.undetermined, "the equations leave them free")
-    camera = end.state.camera
-    sigma = dict(zip(end.state.shared_names, known.sigma, strict=True))
-    limits = {"fx": camera.fx, "fy": camera.fy, "cx": camera.width, "cy": camera.height, "skew": camera.fx}
-    vague = [name for name, scale in limits.items() if sigma[name] > 0.1 * scale]
-    if vague:
-        raise DegenerateViews(vague, "one standard deviation would exceed a tenth of their size")
-    if _tilt_spread(end.state.cam_from_board) < np.radians(15) and _focal_is_loose(end, seen, free, variance):
-        raise DegenerateViews(("fx", "fy"), "the views are nearly parallel to each other")
-    return known
-
-
-def _tilt_spread(cam_from_board: SE3) -> float:
-    """Largest angle between board normals, mirror-tilts counted apart [rad]."""
-    normals = cam_from_board.rotation[:, :, 2]
-    mean = normals.mean(axis=0)
-    return float(np.arccos(np.clip((normals @ mean / np.linalg.norm(mean)).min(), -1, 1)))
-
-
-def _focal_is_loose(end: Refinement, seen: Observations, free: Array, variance: float) -> bool:
-    """Whether another focal length explains the corners as well: the profile likelihood asked directly.
-
-    Noise bends parallel boards by apparent tilts whose curvature makes the covariance look
-    firm where it is not, so the covariance cannot be trusted to tell.
-    """
-    held = free.copy()
-    held[:2] = False
-    for factor in (1.15, 1 / 1.15):
-        parameters = end.state.camera.parameters
-        parameters[:2] *= factor
-        pose = end.state.cam_from_board
-        farther = SE3(pose.rotation, pose.translation * [1, 1, factor])
-        other = State(end.state.camera.with_parameters(parameters), farther, end.state.warp)
-        try:
-            other = refine(other, seen, held, max_iterations=30, tolerance=0.1)
-        except NoConvergence:
-            continue
-        if 2 * (other.equations.cost - end.equations.cost) < 25 * variance:
-            return True
-    return False
-
-
-def _refuse_parallel(cam_from_board: SE3) -> None:
-    if _tilt_spread(cam_from_board) < np.radians(10):
-        raise DegenerateViews(("fx", "fy", "cx", "cy"), "the views are nearly parallel to each other")
+def _kept(view: Corners, used: Array) -> Corners:
+    """The corners of a view that were used, in the order of its table row."""
+    keep = np.isin(view.ids, used)
+    return view if keep.all() else Corners(view.image, view.ids[keep], view.pixels[keep], view.sigma_px[keep])

@@ -13,6 +13,7 @@ import numpy as np
 from vision_robot.calibrate.homography import fit_homographies
 from vision_robot.calibrate.normal_equations import residuals
 from vision_robot.calibrate.observations import Observations
+from vision_robot.calibrate.settings import Settings
 from vision_robot.calibrate.state import State
 from vision_robot.calibrate.warp import Warp
 from vision_robot.calibrate.zhang import (
@@ -31,12 +32,14 @@ GOOD_START = 0.01
 """Median error, as a part of the picture's width, below which a closed form needs no rival."""
 
 
-def start(seen: Observations, size: tuple[int, int], *, model: str, warp: Warp, skew: bool = False) -> State:
+def start(seen: Observations, size: tuple[int, int], settings: Settings, warp: Warp) -> State:
     """A camera and the poses of all views; raises DegenerateViews when no guess works."""
     best, best_cost = None, np.inf
-    closed_forms = _closed_forms(seen, size, model, skew) if model != "fisheye" else ()
+    model = settings.model
+    closed_forms = _closed_forms(seen, size, model, settings.skew) if model != "fisheye" else ()
     for guesses in (closed_forms, _scanned(size, model)):
-        for camera in guesses:
+        for guess in guesses:
+            camera = guess.with_parameters(settings.held(guess.parameters))
             state = State(camera, poses_from_bearings(camera, seen), warp)
             cost = float(np.median(np.abs(residuals(state, seen)[:, 0][seen.present])))
             if cost < best_cost:

@@ -27,12 +27,17 @@ class State:
         """Names of the shared parameters."""
         return (*self.camera.parameter_names, *self.warp.names)
 
+    @property
+    def shared_parameters(self) -> Float[Array, "s"]:
+        """Values of the shared parameters."""
+        return np.concatenate([self.camera.parameters, self.warp.coefficients])
+
     def moved(
         self, free: Bool[Array, "p"], shared_step: Float[Array, "f"], pose_step: Float[Array, "views 6"]
     ) -> "State | None":
         """The state after a step of the `free` shared parameters and (w, dt); None if it is no camera."""
         p = len(self.camera.parameters)
-        shared = np.concatenate([self.camera.parameters, self.warp.coefficients])
+        shared = self.shared_parameters
         shared[free] += shared_step
         if not np.all(np.isfinite(shared)) or shared[0] <= 0 or shared[1] <= 0:
             return None

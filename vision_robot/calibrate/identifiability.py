@@ -1,0 +1,72 @@
+"""What the views can tell, asked before any number is given."""
+
+import numpy as np
+
+from vision_robot.calibrate.covariance import Covariance, covariance
+from vision_robot.calibrate.problem import Problem
+from vision_robot.calibrate.refine import Refinement, refine
+from vision_robot.calibrate.state import State
+from vision_robot.errors import DegenerateViews, NoConvergence
+from vision_robot.geometry import SE3
+from vision_robot.geometry.camera import AFFINE_NAMES
+from vision_robot.types import Array
+
+__all__ = ["identified", "tilt_spread"]
+
+VAGUE = 0.1
+"""A standard deviation of more than this part of the parameter's scale is no knowledge."""
+
+
+def identified(end: Refinement, problem: Problem) -> Covariance:
+    """The covariance at the minimum.
+
+    Raises DegenerateViews naming the affine parameters that the views leave free; lens
+    coefficients and warps that cannot be told apart are listed in `Covariance.undetermined`.
+    """
+    variance = 2 * end.equations.cost / max(problem.degrees_of_freedom, 1)
+    state = end.state
+    known = covariance(end.equations, problem.free, state, variance)
+    if set(known.undetermined) & set(AFFINE_NAMES):
+        raise DegenerateViews(known.undetermined, "the equations leave them free")
+    camera = state.camera
+    sigma = dict(zip(camera.parameter_names, known.sigma, strict=True))
+    scales = {"fx": camera.fx, "fy": camera.fy, "cx": camera.width, "cy": camera.height, "skew": camera.fx}
+    vague = [name for name, scale in scales.items() if sigma[name] > VAGUE * scale]
+    if vague:
+        raise DegenerateViews(vague, "one standard deviation would exceed a tenth of their size")
+    nearly_parallel = tilt_spread(state.cam_from_board) < np.radians(15)
+    if nearly_parallel and _focal_is_loose(end, problem, variance):
+        raise DegenerateViews(("fx", "fy"), "the views are nearly parallel to each other")
+    return known
+
+
+def tilt_spread(cam_from_board: SE3) -> float:
+    """Largest angle between a board's normal and their mean [rad]."""
+    normals = cam_from_board.rotation[:, :, 2]
+    mean = normals.mean(axis=0)
+    return float(np.arccos(np.clip((normals @ mean / np.linalg.norm(mean)).min(), -1, 1)))
+
+
+def _focal_is_loose(end: Refinement, problem: Problem, variance: float) -> bool:
+    """Whether another focal length explains the corners as well: the profile likelihood, asked directly.
+
+    Noise bends parallel boards by apparent tilts whose curvature makes the covariance look
+    firm where it is not, so the covariance cannot be trusted to tell.
+    """
+    focal_held: Array = problem.free.copy()
+    focal_held[:2] = False
+    if problem.prior_information[:2].any() or not problem.free[:2].all():
+        return False
+    pose = end.state.cam_from_board
+    for factor in (1.15, 1 / 1.15):
+        parameters = end.state.camera.parameters
+        parameters[:2] *= factor
+        farther = SE3(pose.rotation, pose.translation * [1, 1, factor])
+        other = State(end.state.camera.with_parameters(parameters), farther, end.state.warp)
+        try:
+            refit = refine(other, problem.freeing(focal_held), max_iterations=30, tolerance=0.1)
+        except NoConvergence:
+            continue
+        if 2 * (refit.equations.cost - end.equations.cost) < 25 * variance:
+            return True
+    return False
