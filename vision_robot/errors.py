@@ -42,7 +42,7 @@ class MissingOpenGL(VisionRobotError):
         reasons = "; ".join(f"{backend}: {why}" for backend, why in tried.items())
         super().__init__(
             f"no OpenGL back end can render ({reasons}): install one with "
-            "'apt-get install libegl1 libgl1-mesa-dri' or 'pip install --no-deps lavavu-osmesa'"
+            "'apt-get install libegl1 libgl1 libgl1-mesa-dri' or 'pip install --no-deps lavavu-osmesa'"
         )
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from vision_robot.errors import UnwritableOutput
 
-__all__ = ["atomic_path", "write_bytes", "write_text"]
+__all__ = ["atomic_path", "check_place", "write_bytes", "write_text"]
 
 
 @contextmanager
@@ -19,9 +19,9 @@ def atomic_path(path: Path | str) -> Iterator[Path]:
     `path` stays as it was. Raises UnwritableOutput where the place cannot be written.
     """
     target = Path(path)
-    if target.is_dir():
-        raise UnwritableOutput(target, "it is a folder")
     try:
+        if target.is_dir():
+            raise UnwritableOutput(target, "it is a folder")
         target.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=f".{target.stem}.", suffix=target.suffix, dir=target.parent)
     except OSError as error:
@@ -39,6 +39,18 @@ def atomic_path(path: Path | str) -> Iterator[Path]:
         raise UnwritableOutput(target, error.strerror or str(error)) from error
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def check_place(path: Path | str) -> None:
+    """Raise UnwritableOutput where `path` plainly cannot be written, before any work is done for it."""
+    target = Path(path)
+    if target.is_dir():
+        raise UnwritableOutput(target, "it is a folder")
+    folder = next(parent for parent in target.absolute().parents if parent.exists())
+    if not folder.is_dir():
+        raise UnwritableOutput(target, f"{folder} is no folder")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise UnwritableOutput(target, f"{folder} cannot be written to")
 
 
 def write_text(path: Path | str, text: str) -> None:

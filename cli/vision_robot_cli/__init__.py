@@ -1,0 +1,1 @@
+"""The `vr` command: one thin file per command over the library."""

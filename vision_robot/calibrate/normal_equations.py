@@ -105,7 +105,7 @@ def _on_board(warp: Warp, seen: Observations) -> Float[Array, "views 3 n"]:
     return seen.points + warp.displacement.T[:, seen.ids].transpose(1, 0, 2)
 
 
-def _fill_rows(J: Float[Array, "views c 2n"], state: State, seen: Observations, free: Array) -> bool:
+def _fill_rows(J: Float[Array, "views c rows"], state: State, seen: Observations, free: Array) -> bool:
     """Write the weighted Jacobian (shared, w, t) and residual as rows; False if a point is behind."""
     camera, views, n = state.camera, *seen.ids.shape
     rotation = state.cam_from_board.rotation

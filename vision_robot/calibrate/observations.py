@@ -1,7 +1,7 @@
 """All corners of all views as one table of arrays, ready for the solver."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -25,13 +25,15 @@ class Observations:
     pixels: Float[Array, "views 2 n"]
     weight: Float[Array, "views n"]
     ids: Array
+    sigma_px: Float[Array, "views n"]
+    """The detector's word, one in the padding."""
 
     @classmethod
     def of(cls, corners: Sequence[Corners], board_points: Float[Array, "m 3"]) -> "Observations":
         """Gather corners; raises BadParameter where an id names no board point."""
         views, n = len(corners), max(map(len, corners), default=0)
         points, pixels = np.zeros((views, 3, n)), np.zeros((views, 2, n))
-        weight, ids = np.zeros((views, n)), np.full((views, n), -1)
+        weight, ids, sigma_px = np.zeros((views, n)), np.full((views, n), -1), np.ones((views, n))
         for i, view in enumerate(corners):
             if len(view) and view.ids.max() >= len(board_points):
                 allowed = f"below the board's {len(board_points)} points"
@@ -41,7 +43,8 @@ class Observations:
             pixels[i, :, :m] = view.pixels.T
             weight[i, :m] = 1 / view.sigma_px
             ids[i, :m] = view.ids
-        return cls(points, pixels, weight, ids)
+            sigma_px[i, :m] = view.sigma_px
+        return cls(points, pixels, weight, ids, sigma_px)
 
     @property
     def present(self) -> Bool[Array, "views n"]:
@@ -55,14 +58,12 @@ class Observations:
 
     def __getitem__(self, views: slice | Array) -> "Observations":
         """Some of the views."""
-        return Observations(self.points[views], self.pixels[views], self.weight[views], self.ids[views])
+        return Observations(*(getattr(self, field.name)[views] for field in fields(self)))
 
     def with_weight(self, weight: Float[Array, "views n"]) -> "Observations":
         """The same corners with other weights."""
-        return Observations(self.points, self.pixels, weight, self.ids)
+        return replace(self, weight=weight)
 
     def keeping(self, keep: Bool[Array, "views n"]) -> "Observations":
         """The corners under the mask; the others become padding."""
-        return Observations(
-            self.points, self.pixels, np.where(keep, self.weight, 0.0), np.where(keep, self.ids, -1)
-        )
+        return replace(self, weight=np.where(keep, self.weight, 0.0), ids=np.where(keep, self.ids, -1))

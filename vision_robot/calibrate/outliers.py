@@ -3,6 +3,7 @@
 import numpy as np
 
 from vision_robot.calibrate.normal_equations import residuals
+from vision_robot.calibrate.observations import Observations
 from vision_robot.calibrate.problem import Problem
 from vision_robot.calibrate.refine import refine
 from vision_robot.calibrate.state import State
@@ -17,6 +18,10 @@ CUTOFF = 5.5
 Gaussian noise alone reaches it once in 3.7 million corners (Rayleigh's tail exp(-c^2 / 2)).
 """
 
+NEVER_OUTLYING_PX = 0.1
+"""A corner nearer than this is kept whatever the noise: on very clean pictures the small errors that
+edges and print leave are no longer Gaussian, and harm less than leaving them out."""
+
 VIEW_SHARE = 0.3
 """A view with a larger share of outliers is an outlier itself."""
 
@@ -29,7 +34,7 @@ def explained(state: State, problem: Problem, *, rounds: int = 15) -> Bool[Array
     """Which corners a robust fit from `state` explains; false in the padding."""
     seen = problem.seen
     length, scale = _lengths(state, problem)
-    if length.max() <= CUTOFF * scale:
+    if not _outlying(length, scale, seen).any():
         return seen.present
     for _ in range(rounds):
         pull = 1 / np.sqrt(1 + (length / (CAUCHY_TUNING * scale)) ** 2)
@@ -41,9 +46,13 @@ def explained(state: State, problem: Problem, *, rounds: int = 15) -> Bool[Array
         length, scale = _lengths(state, problem)
         if abs(scale / previous - 1) < 0.01:
             break
-    keep = seen.present & (length <= CUTOFF * scale)
+    keep = seen.present & ~_outlying(length, scale, seen)
     crowd = seen.present.sum(axis=1)
     return keep & (keep.sum(axis=1) >= (1 - VIEW_SHARE) * crowd)[:, None]
+
+
+def _outlying(length: Array, scale: float, seen: Observations) -> Bool[Array, "views n"]:
+    return (length > CUTOFF * scale) & (length > NEVER_OUTLYING_PX * seen.weight)
 
 
 def _lengths(state: State, problem: Problem) -> tuple[Float[Array, "views n"], float]:

@@ -36,7 +36,7 @@ class CalibrationResult:
     cam_from_board: SE3
     warp: Warp
     corners: tuple[Corners, ...]
-    residuals: tuple[Float[Array, "n 2"], ...]
+    residuals: tuple[Float[Array, "_ 2"], ...]
     covariance: Covariance
     settings: Settings
     rejected: tuple[Rejected, ...] = ()

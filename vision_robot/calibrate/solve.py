@@ -16,6 +16,7 @@ from vision_robot.calibrate.settings import Settings
 from vision_robot.calibrate.settle import settle
 from vision_robot.calibrate.state import State
 from vision_robot.calibrate.warp import Warp
+from vision_robot.calibrate.weighting import trust
 from vision_robot.errors import TooFewViews
 from vision_robot.types import Array, Bool, Float
 
@@ -59,6 +60,7 @@ def calibrate(
     warp = Warp.smooth(board_points, settings.warp)
     problem = _problem(seen, settings, warp, TYPICAL_NOISE_PX)
     end = settle(problem, size, settings, warp)
+    end, problem = _trusted(end, problem)
     if settings.robust:
         end, problem, views, outliers = _without_outliers(end, problem, views)
         left_out += outliers
@@ -115,6 +117,20 @@ def _usable(
     return kept, seen if wide.all() else seen[wide], rejected
 
 
+def _trusted(end: Refinement, problem: Problem) -> tuple[Refinement, Problem]:
+    """Weigh corners by what the residuals say of the detector's word, and settle again."""
+    seen = problem.seen
+    if np.ptp(seen.sigma_px[seen.present]) <= 1e-9:
+        return end, problem
+    for _ in range(2):
+        lengths = np.linalg.norm(residuals(end.state, seen), axis=1)
+        found = trust(lengths[seen.present], seen.sigma_px[seen.present])
+        weight = np.where(seen.present, 1 / found.sigma(seen.sigma_px), 0.0)
+        problem = problem.of(seen.with_weight(weight))
+        end = refine(end.state, problem)
+    return end, problem
+
+
 def _without_outliers(
     end: Refinement, problem: Problem, views: list[Corners]
 ) -> tuple[Refinement, Problem, list[Corners], list[Rejected]]:
@@ -132,7 +148,7 @@ def _without_outliers(
             break
         problem = problem.of(seen.keeping(keep)[alive])
         state = State(end.state.camera, end.state.cam_from_board[alive], end.state.warp)
-        end = refine(state, problem)
+        end, problem = _trusted(refine(state, problem), problem)
     return end, problem, views, rejected
 
 

@@ -66,7 +66,7 @@ class Warp:
             known.append(rest / size)
             kept.append(rest / size * np.sqrt(n))
             names.append(f"board {'xyz'[axis]} {labels[k]}")
-        if len(kept) > n:
+        if len(kept) > 2 * n:
             raise BadParameter("degree of the board's warp", degree, f"lower for a board of {n} points")
         return cls(np.array(kept).reshape(-1, 3, n), np.zeros(len(kept)), tuple(names))
 
@@ -87,7 +87,7 @@ def _monomials(xy: Float[Array, "n 2"], degree: int) -> tuple[Array, list[str]]:
     return np.stack([x**i * y**j for i, j in powers]), labels
 
 
-def _rigid_and_scale(points: Float[Array, "n 3"]) -> Float[Array, "7 3n"]:
+def _rigid_and_scale(points: Float[Array, "n 3"]) -> Float[Array, "7 3*n"]:
     """Orthonormal fields that poses (three turns, three shifts) and the board's unit already hold."""
     centred = points - points.mean(axis=0)
     shifts = [np.tile(axis, (len(points), 1)) for axis in np.eye(3)]

@@ -33,7 +33,7 @@ class NeighbourCorrelation:
         return self.value / self.sigma
 
 
-def normalised_residuals(result: CalibrationResult) -> tuple[Float[Array, "n 2"], ...]:
+def normalised_residuals(result: CalibrationResult) -> tuple[Float[Array, "_ 2"], ...]:
     """Each view's residuals in units of their corners' sigma, no unit."""
     pairs = zip(result.residuals, result.corners, strict=True)
     return tuple(residual / view.sigma_px[:, None] for residual, view in pairs)
@@ -51,12 +51,12 @@ def neighbour_correlation(result: CalibrationResult) -> NeighbourCorrelation:
     uncorrelated, so sigma = 1 / sqrt(2 pairs). Products are those of Moran's I (Moran 1950).
     """
     product, hat, pairs, squares, free = 0.0, 0.0, 0, 0.0, 0
-    residuals = normalised_residuals(result)
+    residuals, points = normalised_residuals(result), corners_in_cam(result)
     for i in range(0, len(residuals), 1 + len(residuals) // MOST_VIEWS):
         e = residuals[i]
         seen = result.corners[i].pixels
         first, second = neighbour_pairs(seen).T
-        H = _pose_hat(result, i)
+        H = _pose_hat(result, i, points[i])
         product += float(np.sum(e[first] * e[second]))
         hat += float(np.trace(H[first, :, second], axis1=-2, axis2=-1).sum())
         squares += float(np.sum(e**2))
@@ -80,10 +80,9 @@ def neighbour_pairs(pixels: Float[Array, "n 2"]) -> Int[Array, "k 2"]:
     return np.unique(np.sort(pairs, axis=1), axis=0)
 
 
-def _pose_hat(result: CalibrationResult, view: int) -> Float[Array, "n 2 n 2"]:
+def _pose_hat(result: CalibrationResult, view: int, points: Float[Array, "n 3"]) -> Float[Array, "n 2 n 2"]:
     """Hat matrix of one view's pose, in weighted residuals."""
     corners, pose = result.corners[view], result.cam_from_board[view]
-    points = corners_in_cam(result, view)
     _, in_point, _ = result.camera.project_jacobian(points)
     J = np.concatenate([-in_point @ skew(points - pose.translation), in_point], axis=-1)
     J = np.where(np.isfinite(J), J, 0.0) / corners.sigma_px[:, None, None]

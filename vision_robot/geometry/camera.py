@@ -19,7 +19,8 @@ class Camera:
 
     ``u = fx x + skew y + cx``, ``v = fy y + cy``, where (x, y) is what the lens `model`
     makes of a point in the camera frame (x right, y down, z forward). Pixels: u right,
-    v down, (0, 0) the centre of the first pixel. All intrinsics are in pixels.
+    v down, (0, 0) the centre of the first pixel. fx, fy, cx, cy and skew are in pixels,
+    `distortion` has no unit; its order is that of the lens' `coefficient_names`.
     """
 
     width: int
@@ -117,8 +118,9 @@ class Camera:
     def unproject(self, pixels: Float[Array, "*batch 2"]) -> Float[Array, "*batch 3"]:
         """Unit rays in the camera frame through pixels; NaN where no ray leads there."""
         pixels = np.asarray(pixels, dtype=float)
-        flat = self._from_pixels(pixels.reshape(-1, 2).T)
-        rays = self.lens.undistort(flat, self.distortion)
+        with np.errstate(invalid="ignore", over="ignore"):  # pixels that are no numbers have no ray
+            flat = self._from_pixels(pixels.reshape(-1, 2).T)
+            rays = self.lens.undistort(flat, self.distortion)
         return (rays / np.linalg.norm(rays, axis=0)).T.reshape(*pixels.shape[:-1], 3)
 
     def undistorted_pixels(self, pixels: Float[Array, "*batch 2"]) -> Float[Array, "*batch 2"]:

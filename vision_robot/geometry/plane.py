@@ -1,8 +1,8 @@
 """The work plane: pixels to positions on it, and back.
 
-The plane is Z = 0 of the station frame {S}. For a pinhole camera the map is the
-homography ``K [r1 r2 t]`` (Zhang 2000, eq. 2); with a lens, rays are met with the plane,
-which is the same map after removing distortion.
+The plane is Z = 0 of any frame; at work it is the station's, {S}. For a pinhole camera the
+map is the homography ``K [r1 r2 t]`` (Zhang 2000, eq. 2), whose inverse ends with a division;
+with a lens, rays are met with the plane, which is the same map after removing distortion.
 """
 
 import numpy as np
@@ -23,7 +23,10 @@ def plane_homography(K: Float[Array, "3 3"], cam_from_plane: SE3) -> Float[Array
 def plane_from_pixels(
     camera: Camera, cam_from_plane: SE3, pixels: Float[Array, "*batch 2"]
 ) -> Float[Array, "*batch 2"]:
-    """Positions (X, Y) [m] on the plane seen at pixels; NaN at and above the horizon."""
+    """Positions (X, Y) [m] on the plane seen at pixels.
+
+    NaN at and above the horizon, and where no ray leads to the pixel.
+    """
     rays = camera.unproject(pixels)
     plane_from_cam = cam_from_plane.inverse()
     direction = rays @ plane_from_cam.rotation.T
@@ -36,7 +39,10 @@ def plane_from_pixels(
 def pixels_from_plane(
     camera: Camera, cam_from_plane: SE3, positions: Float[Array, "*batch 2"]
 ) -> Float[Array, "*batch 2"]:
-    """Pixels of positions (X, Y) [m] on the plane; NaN where the camera cannot see them."""
+    """Pixels of positions (X, Y) [m] on the plane, inside the picture or not.
+
+    NaN where a position lies outside the lens' valid field.
+    """
     positions = np.asarray(positions, dtype=float)
     points = np.concatenate([positions, np.zeros((*positions.shape[:-1], 1))], axis=-1)
     return camera.project(cam_from_plane.apply(points.reshape(-1, 3))).reshape(positions.shape)

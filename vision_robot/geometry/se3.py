@@ -153,7 +153,7 @@ class SE3:
         result[..., :3, 3:] = skew(self.translation) @ self.rotation
         return result
 
-    def apply(self, points: Float[Array, "*batch n 3"]) -> Float[Array, "*batch n 3"]:
+    def apply(self, points: Float[Array, "*sets n 3"]) -> Float[Array, "*each n 3"]:
         """Points (n, 3) of the right frame, in the left frame; one set of points for each transform."""
         points = np.asarray(points, dtype=float)
         return points @ np.swapaxes(self.rotation, -1, -2) + self.translation[..., None, :]

@@ -1,0 +1,1 @@
+"""Pages a person would put into a lab book: self-contained HTML with figures as SVG."""

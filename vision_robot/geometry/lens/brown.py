@@ -5,6 +5,7 @@ rational form (Claus & Fitzgibbon 2005), k4, k5, k6 in the denominator.
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -22,7 +23,7 @@ def _padded(k: Sequence[float]) -> tuple[float, ...]:
 
 
 def plane_field(points: Array) -> Array:
-    """tan of the angle from the axis, infinite behind the camera."""
+    """Tangent of the angle from the axis, infinite behind the camera."""
     x, y, z = points
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(z > 0, np.hypot(x, y) / z, np.inf)
@@ -94,7 +95,8 @@ def _radial(s: Array, k: Sequence[float]) -> tuple[Array, Array]:
     return s * g, g + 2 * r2 * slope
 
 
-def _fold(k: Sequence[float]) -> float:
+@lru_cache(maxsize=256)
+def _fold(k: tuple[float, ...]) -> float:
     """First s where d(radial)/ds = 0 or the denominator vanishes."""
     k1, k2, _, _, k3, k4, k5, k6 = _padded(k)
     top = np.polynomial.Polynomial([1, k1, k2, k3])

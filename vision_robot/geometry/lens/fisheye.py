@@ -5,6 +5,7 @@ between the ray and the optical axis; rays behind the image plane are welcome.
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -60,7 +61,8 @@ def _radial(s: Array, k: Sequence[float]) -> tuple[Array, Array]:
     return value, slope
 
 
-def _fold(k: Sequence[float]) -> float:
+@lru_cache(maxsize=256)
+def _fold(k: tuple[float, ...]) -> float:
     k1, k2, k3, k4 = k
     # Just short of straight backwards, where the direction of a ray is lost.
     return float(np.sqrt(first_positive_root([1, 3 * k1, 5 * k2, 7 * k3, 9 * k4], (np.pi - 1e-6) ** 2)))

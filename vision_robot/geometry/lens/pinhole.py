@@ -11,11 +11,11 @@ from vision_robot.types import Array
 __all__ = ["PINHOLE"]
 
 
-def _distort(points: Array, k: Sequence[float]) -> Array:
+def _distort(points: Array, _k: Sequence[float]) -> Array:
     return points[:2] / points[2]
 
 
-def _jacobian(points: Array, k: Sequence[float]) -> tuple[Array, Array]:
+def _jacobian(points: Array, _k: Sequence[float]) -> tuple[Array, Array]:
     inverse_z = 1 / points[2]
     distorted = points[:2] * inverse_z
     out = np.zeros((2, 3, points.shape[1]))
@@ -24,7 +24,7 @@ def _jacobian(points: Array, k: Sequence[float]) -> tuple[Array, Array]:
     return distorted, out
 
 
-def _radial(s: Array, k: Sequence[float]) -> tuple[Array, Array]:
+def _radial(s: Array, _k: Sequence[float]) -> tuple[Array, Array]:
     return s, np.ones_like(s)
 
 
@@ -34,7 +34,7 @@ PINHOLE = Lens(
     distort=_distort,
     jacobian=_jacobian,
     radial=_radial,
-    fold=lambda k: WIDEST,
+    fold=lambda _k: WIDEST,
     field=plane_field,
     ray=plane_ray,
 )

@@ -1,0 +1,67 @@
+"""`vr board`: a calibration target to print."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from vision_robot_cli.options import Json
+
+__all__ = ["board"]
+
+
+def board(
+    board: Annotated[
+        str, typer.Option(help="chessboard, charuco, circles, acircles or aprilgrid.")
+    ] = "chessboard",
+    size: Annotated[str, typer.Option(help="Inner corners (or points) across x down.")] = "9x6",
+    square: Annotated[
+        str, typer.Option(help="Side of a square or pitch of points, with its unit: 25mm, 1in.")
+    ] = "25mm",
+    out: Annotated[Path, typer.Option("-o", "--out", help="File to write: *.pdf, *.svg or *.png.")] = Path(
+        "board.pdf"
+    ),
+    page: Annotated[
+        str | None,
+        typer.Option(
+            help="a4, a3, letter, ... or none: a page of the target's own size. "
+            "Else the smallest of a4-a0 for PDF, none for SVG and PNG."
+        ),
+    ] = None,
+    dpi: Annotated[float, typer.Option(help="Pixels per inch of a PNG.")] = 600,
+    json: Json = False,
+) -> None:
+    """Draw a calibration target exactly to scale.
+
+    Print at 100 % and hold a ruler against the bar below the pattern.
+
+    Example: vr board --size 9x6 --square 25mm -o board.pdf
+    """
+    from vision_robot.calibrate.boards import board_named
+    from vision_robot.calibrate.boards.paper import on_page
+    from vision_robot.calibrate.boards.printing import print_drawing
+    from vision_robot_cli.output import emit_json
+    from vision_robot_cli.quantities import length_m, whole_pair
+
+    target = board_named(board, whole_pair(size, "--size"), length_m(square, "--square"))
+    drawing, sheet = target.drawing(), "none"
+    if page != "none" and (page or out.suffix.lower() == ".pdf"):
+        drawing, sheet = on_page(drawing, page)
+    print_drawing(drawing, out, dpi=dpi)
+
+    width, height = (1000 * side for side in (drawing.width, drawing.height))
+    if json:
+        result = {
+            "board": board,
+            "size": target.size,
+            "description": target.description,
+            "points": len(target.points),
+            "page": sheet,
+            "page_mm": [round(width, 6), round(height, 6)],
+            "target_mm": [round(1000 * side, 6) for side in target.size_m],
+            "out": str(out),
+        }
+        emit_json("board", result)
+        return
+    on = "" if sheet == "none" else f"{sheet} "
+    print(f"{out}: {target.description}, on {on}{width:g} x {height:g} mm; print at 100 %")

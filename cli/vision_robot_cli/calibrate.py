@@ -1,0 +1,94 @@
+"""`vr calibrate`: photos, a video, corner files or a rendered set in; a camera out."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from vision_robot_cli.options import Json, Out, Report, Seed
+
+__all__ = ["calibrate"]
+
+
+def calibrate(
+    images: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="Photos, folders, quoted patterns or one video; nothing: a rendered set with truth."
+        ),
+    ] = None,
+    board: Annotated[
+        str, typer.Option(help="chessboard, charuco, circles, acircles or aprilgrid.")
+    ] = "chessboard",
+    size: Annotated[str, typer.Option(help="Inner corners (or points) across x down.")] = "9x6",
+    square: Annotated[
+        str, typer.Option(help="Side of a square or pitch of points: 25mm, 1in, 0.025m.")
+    ] = "25mm",
+    model: Annotated[str, typer.Option(help="pinhole, brown5, brown8 or fisheye.")] = "brown5",
+    skew: Annotated[bool, typer.Option("--skew", help="Estimate the skew of the pixel axes too.")] = False,
+    fix: Annotated[
+        list[str] | None, typer.Option(help="Hold a parameter: k3, or k3=0.01. May be repeated.")
+    ] = None,
+    prior: Annotated[
+        list[str] | None, typer.Option(help="What is known of a parameter: cx=640+-5. May be repeated.")
+    ] = None,
+    warp: Annotated[
+        int, typer.Option(help="Degree of the board's unknown smooth shape, 0: exactly as drawn.")
+    ] = 0,
+    corners: Annotated[
+        Path | None, typer.Option(help="Folder of text files of corners instead of pictures.")
+    ] = None,
+    model_points: Annotated[
+        Path | None, typer.Option(help="Text file of board points for --corners.")
+    ] = None,
+    image_size: Annotated[
+        str | None, typer.Option(help="Picture size for --corners, such as 640x480.")
+    ] = None,
+    views: Annotated[int, typer.Option(help="Views of the rendered set.")] = 24,
+    max_rms: Annotated[
+        float | None, typer.Option(help="Exit with 3 when the rms [px] is above this.")
+    ] = None,
+    out: Out = None,
+    file_format: Annotated[
+        str | None, typer.Option("--format", help="Format of --out; else told by its name.")
+    ] = None,
+    report: Report = None,
+    seed: Seed = 0,
+    json: Json = False,
+) -> None:
+    """Calibrate a camera, and say how well it is known.
+
+    Example: vr calibrate photos/*.jpg --size 9x6 --square 25mm -o camera.yaml --report camera.html
+    """
+    from vision_robot.calibrate import calibrate as solve
+    from vision_robot.files import check_place
+    from vision_robot.formats import check_writable
+    from vision_robot_cli import calibration_input, calibration_output
+    from vision_robot_cli.output import check_limit, emit_json
+
+    settings = calibration_input.settings(model, skew, fix or (), prior or (), warp)
+    if out:
+        check_writable(out, file_format, model=model, skew=skew)
+    if report:
+        check_place(report)
+    if corners or model_points:
+        given = calibration_input.from_corner_files(corners, model_points, image_size)
+    else:
+        target = calibration_input.target(board, size, square)
+        given = (
+            calibration_input.from_pictures(images, target)
+            if images
+            else calibration_input.rendered(target, views, seed)
+        )
+    result = given.timed(
+        "solve", lambda: solve(given.corners, given.points, given.size, settings, rejected=given.rejected)
+    )
+    if out:
+        calibration_output.write_camera_file(result, out, file_format)
+    if report:
+        calibration_output.write_report(result, given, report, seed)
+    if json:
+        emit_json("calibrate", calibration_output.as_json(result, given, seed))
+    else:
+        print(calibration_output.as_text(result, given))
+    check_limit("rms_px", result.rms_px, max_rms, "px")

@@ -1,0 +1,146 @@
+"""What `vr calibrate` starts from, whichever way it was given."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from time import perf_counter
+from typing import TypeVar
+
+from vision_robot.calibrate import Corners, Rejected, Settings
+from vision_robot.calibrate.boards import Board, board_named
+from vision_robot.calibrate.corner_files import read_corner_folder, read_model_points, size_holding
+from vision_robot.calibrate.detect import detect_boards, seen_size
+from vision_robot.errors import BadParameter, BoardNotFound
+from vision_robot.geometry import Camera
+from vision_robot.images import open_images
+from vision_robot.types import Array, Float, Image
+from vision_robot_cli.output import note, progress, ticking
+from vision_robot_cli.quantities import length_m, whole_pair
+
+__all__ = [
+    "CalibrationInput",
+    "from_corner_files",
+    "from_pictures",
+    "rendered",
+    "rendered_folder",
+    "settings",
+    "target",
+]
+
+Result = TypeVar("Result")
+
+
+@dataclass
+class CalibrationInput:
+    """Corners, the board they lie on, and where they came from."""
+
+    source: str
+    corners: list[Corners]
+    points: Float[Array, "n 3"]
+    size: tuple[int, int]
+    rejected: list[Rejected] = field(default_factory=list)
+    board: Board | None = None
+    truth: Camera | None = None
+    size_assumed: bool = False
+    pictures: Mapping[str, Image] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    def timed(self, stage: str, work: Callable[[], Result]) -> Result:
+        """Do the work and note how long it took."""
+        start = perf_counter()
+        result = work()
+        self.seconds[stage] = perf_counter() - start
+        return result
+
+
+def settings(model: str, skew: bool, fix: Sequence[str], prior: Sequence[str], warp: int) -> Settings:
+    """The options --model, --skew, --fix, --prior and --warp."""
+    fixed = {}
+    for word in fix:
+        name, _, value = word.partition("=")
+        fixed[name.strip()] = _number("--fix", word, value or "0")
+    priors = {}
+    for word in prior:
+        name, equals, rest = word.partition("=")
+        mean, sign, sigma = rest.replace("±", "+-").partition("+-")
+        if not (equals and sign):
+            raise BadParameter("--prior", word, "a name, a mean and a standard deviation: cx=640+-5")
+        priors[name.strip()] = (_number("--prior", word, mean), _number("--prior", word, sigma))
+    return Settings(model=model, skew=skew, fixed=fixed, priors=priors, warp=warp)
+
+
+def target(board: str, size: str, square: str) -> Board:
+    """The options --board, --size and --square."""
+    return board_named(board, whole_pair(size, "--size"), length_m(square, "--square"))
+
+
+def from_corner_files(
+    folder: Path | None, model_points: Path | None, image_size: str | None
+) -> CalibrationInput:
+    """The options --corners, --model-points and --image-size."""
+    if folder is None or model_points is None:
+        missing = "--corners" if folder is None else "--model-points"
+        raise BadParameter(missing, None, "given: --corners DIR and --model-points FILE go together")
+    points = read_model_points(model_points)
+    corners = read_corner_folder(folder, len(points), leave_out=[model_points])
+    size = whole_pair(image_size, "--image-size") if image_size else size_holding(corners)
+    return CalibrationInput(str(folder), corners, points, size, size_assumed=image_size is None)
+
+
+def from_pictures(paths: Sequence[str], board: Board) -> CalibrationInput:
+    """Photos, folders, patterns or a video."""
+    pictures = open_images(paths)
+    return _detected(", ".join(paths), pictures, board)
+
+
+def rendered(board: Board, views: int, seed: int) -> CalibrationInput:
+    """A set rendered in MuJoCo, with its truth."""
+    from vision_robot_synth.calibration import calibration_set
+
+    truth = calibration_set(board=board, views=views, seed=seed)
+    start = perf_counter()
+    images = progress(truth.images(), "rendering", total=views)
+    pictures = {f"view {i:02d}": image for i, image in enumerate(images)}
+    seconds = {"render": perf_counter() - start}
+    given = _detected("rendered", pictures, board)
+    return replace(given, truth=truth.camera, seconds={**seconds, **given.seconds})
+
+
+def rendered_folder(folder: Path, views: int, seed: int) -> CalibrationInput:
+    """The same, kept as a dataset on disk, where a second run finds it again."""
+    from vision_robot_synth.calibration import calibration_set
+    from vision_robot_synth.calibration_folder import write_calibration_set
+
+    truth = calibration_set(views=views, seed=seed)
+    start = perf_counter()
+    note(f"rendering {views} views into {folder}")
+    write_calibration_set(truth, folder)
+    seconds = {"render": perf_counter() - start}
+    given = from_pictures([str(folder / "frames")], truth.board)
+    return replace(given, truth=truth.camera, seconds={**seconds, **given.seconds})
+
+
+def _detected(source: str, pictures: Mapping[str, Image], board: Board) -> CalibrationInput:
+    start = perf_counter()
+    with ticking("finding the board") as tick:
+        found = detect_boards(pictures, board, progress=tick)
+    names = list(pictures)
+    corners = [view for view in found if view is not None]
+    wanted = f"{board.name} {board.size}"
+    missing = [name for name, view in zip(names, found, strict=True) if view is None]
+    if not corners:
+        raise BoardNotFound(len(names), wanted, seen_size(pictures[names[0]]))
+    height, width = pictures[names[0]].shape[:2]
+    rejected = [Rejected(name, f"no {wanted} board found") for name in missing]
+    given = CalibrationInput(
+        source, corners, board.points, (width, height), rejected, board, pictures=pictures
+    )
+    given.seconds["detect"] = perf_counter() - start
+    return given
+
+
+def _number(option: str, word: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise BadParameter(option, word, "a name and a number, such as k3=0") from None

@@ -1,0 +1,151 @@
+"""How `vr calibrate` shows its result: text, JSON, camera file."""
+
+import shlex
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from vision_robot.calibrate import CalibrationResult
+from vision_robot.evaluate.projection import projection_error
+from vision_robot.formats import write_camera
+from vision_robot.geometry import Camera
+from vision_robot_cli.calibration_input import CalibrationInput
+from vision_robot_cli.output import note
+
+__all__ = ["as_json", "as_text", "write_camera_file", "write_report"]
+
+
+def as_json(result: CalibrationResult, given: CalibrationInput, seed: int) -> dict[str, Any]:
+    """The object of `vr calibrate --json`."""
+    import vision_robot
+
+    seconds = {"detect": 0.0, "solve": 0.0, **given.seconds}
+    return {
+        "camera": asdict(result.camera),
+        "rms_px": result.rms_px,
+        "noise_px": result.noise_px,
+        "views_used": len(result.corners),
+        "views_rejected": [
+            {"image": r.image, "reason": r.reason} for r in result.rejected if r.corner is None
+        ],
+        "corners": result.corner_count,
+        "corners_rejected": [
+            {"image": r.image, "corner": r.corner, "reason": r.reason}
+            for r in result.rejected
+            if r.corner is not None
+        ],
+        "sigma": result.sigma,
+        "undetermined": list(result.covariance.undetermined),
+        "covariance": {
+            "parameters": list(result.camera.parameter_names),
+            "matrix": result.covariance.intrinsics,
+        },
+        "views": [
+            {
+                "image": view.image,
+                "corners": len(view),
+                "rms_px": rms,
+                "cam_from_board": {"rotvec_rad": rotvec, "translation_m": translation},
+            }
+            for view, rms, rotvec, translation in zip(
+                result.corners,
+                result.view_rms_px,
+                result.cam_from_board.rotvec(),
+                result.cam_from_board.translation,
+                strict=True,
+            )
+        ],
+        "board": given.board.description if given.board else None,
+        "board_warp_rms_m": (result.warp.displacement**2).sum(axis=1).mean() ** 0.5
+        if len(result.warp)
+        else 0.0,
+        "image_size_assumed": given.size_assumed,
+        "truth": _against(result.camera, given.truth) if given.truth else None,
+        "seed": seed if given.truth else None,
+        "seconds": {**seconds, "total": sum(seconds.values())},
+        "version": vision_robot.__version__,
+    }
+
+
+def _against(camera: Camera, truth: Camera) -> dict[str, Any]:
+    plain = projection_error(camera, truth)
+    turned = projection_error(camera, truth, fit_rotation=True)
+    errors = {
+        f"{name}_error": getattr(camera, name) - getattr(truth, name) for name in ("fx", "fy", "cx", "cy")
+    }
+    return {
+        **errors,
+        "fx_error_percent": 100 * errors["fx_error"] / truth.fx,
+        "fy_error_percent": 100 * errors["fy_error"] / truth.fy,
+        "projection_error_px": {"rms": plain.rms_px, "max": plain.max_px},
+        "projection_error_rotation_fitted_px": {"rms": turned.rms_px, "max": turned.max_px},
+        "camera": asdict(truth),
+    }
+
+
+def as_text(result: CalibrationResult, given: CalibrationInput) -> str:
+    """The result for a person at a terminal."""
+    camera, truth = result.camera, given.truth
+    corners_lost = sum(r.corner is not None for r in result.rejected)
+    lines = [
+        f"{camera.model} camera, {camera.width} x {camera.height} px, from {len(result.corners)} views"
+        f" and {result.corner_count} corners",
+        f"rms {result.rms_px:.4f} px per corner; noise {result.noise_px:.4f} px per axis",
+        "",
+        f"{'':6}{'value':>13}{'sigma':>11}" + (f"{'truth':>13}{'error':>11}{'in sigma':>9}" if truth else ""),
+    ]
+    true_values = dict(zip(truth.parameter_names, truth.parameters, strict=True)) if truth else {}
+    for name, value in zip(camera.parameter_names, camera.parameters, strict=True):
+        sigma = result.sigma.get(name)
+        if sigma is None and name == "skew":
+            continue
+        digits = 3 if name in ("fx", "fy", "cx", "cy") else 6
+        row = f"{name:6}{value:13.{digits}f}"
+        row += f"{sigma:11.{digits}f}" if sigma is not None else f"{_why(name, result):>11}"
+        if name in true_values:
+            error = value - true_values[name]
+            row += f"{true_values[name]:13.{digits}f}{error:11.{digits}f}"
+            row += f"{error / sigma:9.2f}" if sigma else ""
+        lines.append(row)
+    if truth:
+        error = projection_error(camera, truth)
+        lines += [
+            "",
+            f"projection error to the truth: {error.rms_px:.4f} px rms, {error.max_px:.4f} px at most",
+        ]
+    if given.size_assumed:
+        lines += ["", f"picture size {camera.width} x {camera.height} assumed: give --image-size to be sure"]
+    for r in result.rejected:
+        if r.corner is None:
+            lines.append(f"left out: {r.image}: {r.reason}")
+    if corners_lost:
+        lines.append(f"left out: {corners_lost} single corner(s) farther off than noise explains")
+    return "\n".join(lines)
+
+
+def _why(name: str, result: CalibrationResult) -> str:
+    return "unknown" if name in result.covariance.undetermined else "fixed"
+
+
+def write_report(result: CalibrationResult, given: CalibrationInput, path: Path, seed: int) -> None:
+    """Write --report."""
+    from vision_robot.report.calibration import calibration_page
+    from vision_robot.report.page import write_page
+
+    page = calibration_page(
+        result,
+        board=given.board,
+        truth=given.truth,
+        images=given.pictures,
+        command=shlex.join(["vr", *sys.argv[1:]]),
+        seed=seed if given.truth else None,
+    )
+    write_page(page, path)
+    note(f"report written to {path}")
+
+
+def write_camera_file(result: CalibrationResult, path: Path, file_format: str | None) -> None:
+    """Write --out."""
+    write_camera(result.camera, path, file_format)
+    note(f"camera written to {path}")

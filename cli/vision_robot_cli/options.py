@@ -1,0 +1,13 @@
+"""Options that several commands share, so that they are spelt and explained the same everywhere."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+__all__ = ["Json", "Out", "Report", "Seed"]
+
+Json = Annotated[bool, typer.Option("--json", help="Write one JSON object to stdout, nothing else.")]
+Out = Annotated[Path | None, typer.Option("-o", "--out", help="Where the result is written.")]
+Report = Annotated[Path | None, typer.Option("--report", help="Also write a self-contained HTML page.")]
+Seed = Annotated[int, typer.Option("--seed", help="Seed of everything that is drawn by chance.")]

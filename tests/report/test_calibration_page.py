@@ -1,0 +1,171 @@
+"""The calibration page: it says what the numbers say, for good calibrations and for bad ones."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.report.test_page import Reader
+from tests.views import CAMERAS, make_views
+from vision_robot.calibrate import Corners, Rejected, Settings, calibrate
+from vision_robot.calibrate.boards import Chessboard
+from vision_robot.errors import BadParameter
+from vision_robot.geometry import Camera
+from vision_robot.report.calibration import calibration_page
+from vision_robot.report.calibration_advice import advice
+from vision_robot.report.calibration_findings import find
+from vision_robot.report.page import render_page
+
+SIZE = (1280, 960)
+HOSTILE = "<b>$x_1$</b> &amp; é漢.png"
+
+
+def result_of(model="brown5", count=12, *, seed=2, rejected=(), rename=None, change=None, **settings):
+    views = make_views(CAMERAS[model], count, seed=seed)
+    corners = [replace(view, image=(rename or "{}.jpg").format(i)) for i, view in enumerate(views.corners)]
+    for i, pixels in (change or {}).items():
+        corners[i] = replace(corners[i], pixels=corners[i].pixels + pixels)
+    return calibrate(corners, views.board, SIZE, Settings(model=model, **settings), rejected=rejected)
+
+
+@pytest.fixture(scope="module")
+def result():
+    return result_of(rename=HOSTILE + " {}", rejected=[Rejected("<i>lost</i>", "no board found")])
+
+
+@pytest.fixture(scope="module")
+def html(result):
+    rng = np.random.default_rng(0)
+    images = {view.image: rng.integers(0, 255, (96, 128), dtype=np.uint8) for view in result.corners}
+    page = calibration_page(
+        result,
+        board=Chessboard(11, 8, 0.03),
+        truth=CAMERAS["brown5"],
+        images=images,
+        title="Camera <A>",
+        command="vr calibrate --seed 2",
+        seed=2,
+    )
+    return render_page(page)
+
+
+def test_it_is_a_page_by_itself_and_small(html):
+    reader = Reader(html)
+    assert reader.tags.count("svg") == 12
+    assert reader.tags.count("img") == 12
+    assert "http" not in html
+    assert "<script" not in html
+    assert len(html) < 1_000_000
+
+
+def test_names_of_pictures_stay_names(html):
+    reader = Reader(html)
+    assert "i" not in reader.tags
+    text = "".join(reader.text)
+    assert HOSTILE + " 3" in text
+    assert "<i>lost</i>" in text
+    assert "no board found" in text
+    assert "Camera <A>" in text
+
+
+def test_it_states_every_number_with_its_sigma(html, result):
+    text = "".join(Reader(html).text).replace("\u00a0", " ")
+    for name in ("fx", "fy", "cx", "cy"):
+        value = getattr(result.camera, name)
+        assert any(f"{value:.{d}f} ± {result.sigma[name]:.{d}f} px" in text for d in (0, 1, 2, 3))
+    assert f"{result.rms_px:.3f} px rms per point" in text
+    assert f"{result.noise_px:.3f} px" in text
+    assert "12 of 13" in text
+    assert "chessboard 11x8 inner corners, squares 30 mm" in text
+    assert "vr calibrate --seed 2" in text
+    assert "Vision Robot" in text
+
+
+def test_the_same_calibration_is_the_same_page(result):
+    assert render_page(calibration_page(result)) == render_page(calibration_page(result))
+
+
+@pytest.mark.parametrize("model", ["pinhole", "brown8", "fisheye"])
+def test_every_lens_has_its_page(model):
+    result = result_of(model, 8)
+    reader = Reader(render_page(calibration_page(result, truth=CAMERAS[model])))
+    assert reader.tags.count("svg") == (10 if model == "pinhole" else 12)
+
+
+def test_a_truth_of_another_model_is_compared_by_its_picture_alone():
+    result = result_of("brown5", 8)
+    truth = Camera(1280, 960, 1000, 1010, 650, 470)
+    text = "".join(Reader(render_page(calibration_page(result, truth=truth))).text)
+    assert "It misses the truth by" in text
+    assert "error / σ" not in text
+
+
+def test_a_truth_of_another_size_is_refused(result):
+    with pytest.raises(BadParameter, match="camera size"):
+        calibration_page(result, truth=Camera(640, 480, 500, 500, 320, 240))
+
+
+def said(result, truth=None, tone=None):
+    return " ".join(text for kind, text in advice(find(result, truth)) if tone in (None, kind))
+
+
+def test_good_calibrations_are_called_good(result):
+    assert "do not correlate measurably" in said(result, tone="good")
+    assert "The truth lies where the stated uncertainty says" in said(result, CAMERAS["brown5"], "good")
+
+
+def test_a_lens_model_too_simple_is_seen_in_the_residuals():
+    held = {"k2": 0.0, "k3": 0.0, "p1": 0.0, "p2": 0.0}
+    simple = result_of("brown5", 12, fixed=held, robust=False)
+    assert "the lens or board model is too simple" in said(simple, tone="caution")
+    assert "The truth lies farther away" in said(simple, CAMERAS["brown5"], "caution")
+
+
+def test_a_view_much_worse_than_the_rest_is_named():
+    noise = np.random.default_rng(0).normal(size=(88, 2)) * 0.5
+    assert "view 5 (4.jpg)" in said(result_of(change={4: noise}), tone="caution")
+
+
+def test_the_corners_of_the_picture_without_board_are_named(result):
+    shown = [view.pixels for view in result.corners]
+    keep = [i for i, pixels in enumerate(shown) if pixels[:, 0].min() > 300]
+    few = replace(
+        result,
+        corners=tuple(result.corners[i] for i in keep),
+        residuals=tuple(result.residuals[i] for i in keep),
+        cam_from_board=result.cam_from_board[np.array(keep)],
+    )
+    text = said(few, tone="caution")
+    assert "top-left" in text
+    assert "bottom-left" in text
+
+
+def test_boards_hardly_tilted_are_told():
+    views = make_views(CAMERAS["pinhole"], 12, seed=1, tilt=0.08)
+    flat = calibrate(views.corners, views.board, SIZE, Settings(model="pinhole"))
+    assert "of 12 views tilt the board by 20° or more" in said(flat, tone="caution")
+
+
+def test_terms_that_are_nothing_are_named():
+    views = make_views(CAMERAS["pinhole"], 12, seed=1)
+    result = calibrate(views.corners, views.board, SIZE, Settings(model="brown5"))
+    text = said(result, tone="note")
+    assert "not differ from zero by two sigma" in text
+    assert "k3" in text
+    assert "k1" in text
+
+
+def test_few_views_are_told_and_many_are_not():
+    assert "5 views were used" in said(result_of(count=5), tone="note")
+    assert "views were used" not in said(result_of(count=12))
+
+
+def test_corners_that_scatter_more_than_stated_are_told():
+    views = make_views(CAMERAS["brown5"], 10, seed=2)
+    rng = np.random.default_rng(0)
+    stated = [
+        Corners(view.image, view.ids, view.pixels, rng.uniform(0.04, 0.06, len(view)))
+        for view in views.corners
+    ]
+    text = said(calibrate(stated, views.board, SIZE), tone="note")
+    assert "times as much as their detector stated" in text

@@ -1,0 +1,29 @@
+"""A finished calibration as the solver left it, so that it can be asked further."""
+
+import numpy as np
+
+from vision_robot.calibrate.observations import Observations
+from vision_robot.calibrate.problem import Problem
+from vision_robot.calibrate.result import CalibrationResult
+from vision_robot.calibrate.state import State
+from vision_robot.types import Array, Float
+
+__all__ = ["solution"]
+
+
+def solution(result: CalibrationResult, board_points: Float[Array, "m 3"]) -> tuple[State, Problem]:
+    """The state at the minimum and the problem it solves, without the corners left out.
+
+    `board_points` (m, 3) [m] are those the calibration was given.
+    """
+    settings = result.settings
+    seen = Observations.of(result.corners, board_points)
+    problem = Problem.plain(seen, np.concatenate([result.free, np.ones(len(result.warp), dtype=bool)]))
+    if settings.priors:
+        scaled = [r / c.sigma_px[:, None] for r, c in zip(result.residuals, result.corners, strict=True)]
+        variance = np.sum(np.concatenate(scaled) ** 2) / max(result.degrees_of_freedom, 1)
+        for name, (mean, sigma) in settings.priors.items():
+            i = settings.names.index(name)
+            problem.prior_mean[i] = mean
+            problem.prior_information[i] = variance / sigma**2
+    return State(result.camera, result.cam_from_board, result.warp), problem
