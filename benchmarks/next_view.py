@@ -137,7 +137,7 @@ def main() -> None:
     columns = ("projection uncertainty below", "views, next best", "views, random", "random / next best")
     table = markdown(columns, rows)
     table += (
-        f"\n\n{options.model}, {NOISE_PX} px noise, {seeds} seeds, means and 95 % intervals (ratio: geometric); "
+        f"\n\n{options.model}, {NOISE_PX} px, {seeds} seeds, means (ratio: geometric) and 95 % intervals; "
         f"≥: some runs given up after {most} views. "
         f"True over stated error at the end, rms: {np.sqrt(np.mean(np.square(honesty))):.2f}."
     )

@@ -22,8 +22,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from synthetic import COLUMNS, ROWS, SQUARE_M, TYPICAL, some_views
 from refinement_mrcal import peak_mb
+from synthetic import COLUMNS, ROWS, SQUARE_M, TYPICAL, some_views
 from table import markdown, shown
 
 from vision_robot.calibrate import Corners, Settings, calibrate
@@ -49,7 +49,9 @@ def main() -> None:
     parser.add_argument("--mrcal-python", default=sys.executable, help="interpreter that can import mrcal")
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--quick", action="store_true", help="10 views, once: only to see that it runs")
-    parser.add_argument("--worker", nargs=3, metavar=("METHOD", "DATA", "REPETITIONS"), help=argparse.SUPPRESS)
+    parser.add_argument(
+        "--worker", nargs=3, metavar=("METHOD", "DATA", "REPETITIONS"), help=argparse.SUPPRESS
+    )
     options = parser.parse_args()
     if options.worker:
         method, data, repetitions = options.worker

@@ -9,7 +9,7 @@ import numpy as np
 
 
 def peak_mb(*, afresh: bool = False) -> float:
-    """Peak resident memory of this process [MB], from now on where `afresh`; NaN where the system does not tell.
+    """Peak resident memory of this process [MB], from now on where `afresh`; NaN where it is not told.
 
     Not getrusage's: that is inherited from the process which started this one.
     """

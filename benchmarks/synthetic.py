@@ -66,7 +66,9 @@ def some_poses(camera: Camera, count: int, rng: np.random.Generator) -> SE3:
         k = 16 * count + 64
         ray = camera.unproject(rng.uniform(0, 1, (k, 2)) * (camera.width - 1, camera.height - 1))
         towards = rng.uniform(0, 2 * np.pi, k)
-        lean = rng.uniform(0, np.radians(55), k)[:, None] * np.stack([np.cos(towards), np.sin(towards)], axis=1)
+        lean = rng.uniform(0, np.radians(55), k)[:, None] * np.stack(
+            [np.cos(towards), np.sin(towards)], axis=1
+        )
         tilt = rotation_exp(np.column_stack([lean, np.zeros(k)]))
         roll = rotation_exp(np.column_stack([np.zeros((k, 2)), rng.uniform(-0.5, 0.5, k)]))
         axis = np.stack([-ray[:, 1], ray[:, 0], np.zeros(k)], axis=1)

@@ -26,7 +26,8 @@ def mean_interval(values: Float[Array, "n"], *, seed: int = 0) -> tuple[float, f
     """Mean and its 95 % interval by bootstrap (percentiles of 4000 resamples)."""
     values = np.asarray(values, dtype=float)
     again = np.random.default_rng(seed).choice(values, (4000, len(values))).mean(axis=1)
-    return float(values.mean()), *map(float, np.percentile(again, [2.5, 97.5]))
+    low, high = np.percentile(again, [2.5, 97.5])
+    return float(values.mean()), float(low), float(high)
 
 
 def wilson(hits: int, trials: int) -> tuple[float, float]:

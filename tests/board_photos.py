@@ -17,14 +17,14 @@ def photo(
     blur_px: float = 0.5,
     noise: float = 0.0,
     seed: int = 0,
-    samples: int = 5,
+    samples: int = 4,
 ) -> np.ndarray:
     """Grey picture of a printed board; `samples` x `samples` points are averaged in each pixel."""
     # Board positions change smoothly: bilinear between pixels they are good to 1e-4 px.
     u, v = np.meshgrid(np.arange(-1.0, camera.width + 1), np.arange(-1.0, camera.height + 1))
     plane = plane_from_pixels(camera, cam_from_board, np.stack([u, v], axis=-1))
     step = np.nanmedian(np.linalg.norm(np.diff(plane, axis=1), axis=-1))
-    scale = min(2.5 / step, 6000 / max(board.size_m))
+    scale = min(2.5 / step, 3000 / max(board.size_m))
     page = raster(board.drawing(), scale)
     at_print = ((plane + board.origin_m) * scale - 0.5).astype(np.float32)
     size = (at_print.shape[1] * samples, at_print.shape[0] * samples)

@@ -85,7 +85,7 @@ def smooth_pattern(pose: SE3, board: Chessboard, camera: Camera) -> np.ndarray:
     R, t = pose.rotation, pose.translation
     depth = (R[:, 2] @ t) / (R[0, 2] * x + R[1, 2] * y + R[2, 2])
     ray = (x * depth - t[0], y * depth - t[1], depth - t[2])
-    a, b = (sum(R[i, axis] * ray[i] for i in range(3)) / board.square_m for axis in range(2))
+    a, b = (np.tensordot(R[:, axis], np.stack(ray), 1) / board.square_m for axis in range(2))
     steps = [np.hypot(*np.gradient(c)) for c in (a, b)]
 
     def edge(c: np.ndarray, step: np.ndarray) -> np.ndarray:

@@ -124,10 +124,16 @@ def test_kinds_of_samples(tmp_path):
 def test_exif_turns_are_ignored(tmp_path):
     """A photo taken upright keeps the sensor's rows and columns."""
     data = save(tmp_path / "turned.jpg").read_bytes()
-    exif = b"Exif\x00\x00MM\x00*\x00\x00\x00\x08\x00\x01\x01\x12\x00\x03\x00\x00\x00\x01\x00\x06\x00\x00\x00\x00\x00\x00"
+    header, entry = (
+        b"Exif\x00\x00MM\x00*\x00\x00\x00\x08",
+        b"\x01\x12\x00\x03\x00\x00\x00\x01\x00\x06\x00\x00",
+    )
+    exif = header + b"\x00\x01" + entry + bytes(4)
     segment = b"\xff\xe1" + (len(exif) + 2).to_bytes(2) + exif
     (tmp_path / "turned.jpg").write_bytes(data[:2] + segment + data[2:])
-    assert cv2.imread(str(tmp_path / "turned.jpg")).shape == (64, 48, 3)
+    turned = cv2.imread(str(tmp_path / "turned.jpg"))
+    assert turned is not None
+    assert turned.shape == (64, 48, 3)
     assert read_image(tmp_path / "turned.jpg").shape == (48, 64, 3)
 
 

@@ -7,6 +7,7 @@ as attributes so that a caller can act on it without parsing text.
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 __all__ = [
     "BadCameraFile",
@@ -28,6 +29,19 @@ __all__ = [
 
 class VisionRobotError(Exception):
     """Root of all errors of this library."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Exceptions are pickled as a call with their message; ours take the evidence instead, and
+        # have to come back from other processes.
+        return _rebuilt, (type(self), self.args, self.__dict__)
+
+
+def _rebuilt(
+    cls: type[VisionRobotError], args: tuple[Any, ...], evidence: dict[str, Any]
+) -> VisionRobotError:
+    error = cls.__new__(cls, *args)
+    error.__dict__.update(evidence)
+    return error
 
 
 class NoConvergence(VisionRobotError):

@@ -24,7 +24,9 @@ def calibrate(
     square: Annotated[
         str, typer.Option(help="Side of a square or pitch of points: 25mm, 1in, 0.025m.")
     ] = "25mm",
-    model: Annotated[str, typer.Option(help="pinhole, brown5, brown8 or fisheye.")] = "brown5",
+    model: Annotated[
+        str, typer.Option(help="pinhole, brown5, brown8 or fisheye; auto: by views held out.")
+    ] = "brown5",
     skew: Annotated[bool, typer.Option("--skew", help="Estimate the skew of the pixel axes too.")] = False,
     fix: Annotated[
         list[str] | None, typer.Option(help="Hold a parameter: k3, or k3=0.01. May be repeated.")
@@ -33,8 +35,11 @@ def calibrate(
         list[str] | None, typer.Option(help="What is known of a parameter: cx=640+-5. May be repeated.")
     ] = None,
     warp: Annotated[
-        int, typer.Option(help="Degree of the board's unknown smooth shape, 0: exactly as drawn.")
-    ] = 0,
+        str,
+        typer.Option(
+            help="Degree of the board's unknown smooth shape; 0: as drawn; auto: by views held out."
+        ),
+    ] = "0",
     corners: Annotated[
         Path | None, typer.Option(help="Folder of text files of corners instead of pictures.")
     ] = None,
@@ -60,15 +65,16 @@ def calibrate(
 
     Example: vr calibrate photos/*.jpg --size 9x6 --square 25mm -o camera.yaml --report camera.html
     """
-    from vision_robot.calibrate import calibrate as solve
     from vision_robot.files import check_place
     from vision_robot.formats import check_writable
     from vision_robot_cli import calibration_input, calibration_output
+    from vision_robot_cli.calibration_verdict import reached
     from vision_robot_cli.output import check_limit, emit_json
 
-    settings = calibration_input.settings(model, skew, fix or (), prior or (), warp)
+    candidates = calibration_input.candidates(model, skew, fix or (), prior or (), warp)
     if out:
-        check_writable(out, file_format, model=model, skew=skew)
+        for candidate in candidates:
+            check_writable(out, file_format, model=candidate.model, skew=skew)
     if report:
         check_place(report)
     if corners or model_points:
@@ -80,15 +86,13 @@ def calibrate(
             if images
             else calibration_input.rendered(target, views, seed)
         )
-    result = given.timed(
-        "solve", lambda: solve(given.corners, given.points, given.size, settings, rejected=given.rejected)
-    )
+    verdict = reached(given, candidates, seed)
     if out:
-        calibration_output.write_camera_file(result, out, file_format)
+        calibration_output.write_camera_file(verdict.result, out, file_format)
     if report:
-        calibration_output.write_report(result, given, report, seed)
+        calibration_output.write_report(verdict, given, report, seed)
     if json:
-        emit_json("calibrate", calibration_output.as_json(result, given, seed))
+        emit_json("calibrate", calibration_output.as_json(verdict, given, seed))
     else:
-        print(calibration_output.as_text(result, given))
-    check_limit("rms_px", result.rms_px, max_rms, "px")
+        print(calibration_output.as_text(verdict, given))
+    check_limit("rms_px", verdict.result.rms_px, max_rms, "px")

@@ -8,10 +8,13 @@ from typing import TypeVar
 
 from vision_robot.calibrate import Corners, Rejected, Settings
 from vision_robot.calibrate.boards import Board, board_named
+from vision_robot.calibrate.circle_bias import DiscBoard
 from vision_robot.calibrate.corner_files import read_corner_folder, read_model_points, size_holding
 from vision_robot.calibrate.detect import detect_boards, seen_size
+from vision_robot.calibrate.warp import HIGHEST_DEGREE
 from vision_robot.errors import BadParameter, BoardNotFound
-from vision_robot.geometry import Camera
+from vision_robot.geometry import LENSES, Camera
+from vision_robot.geometry.camera import AFFINE_NAMES
 from vision_robot.images import open_images
 from vision_robot.types import Array, Float, Image
 from vision_robot_cli.output import note, progress, ticking
@@ -29,6 +32,8 @@ __all__ = [
 
 Result = TypeVar("Result")
 
+AUTO = "auto"
+
 
 @dataclass
 class CalibrationInput:
@@ -45,6 +50,11 @@ class CalibrationInput:
     pictures: Mapping[str, Image] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
 
+    @property
+    def discs(self) -> DiscBoard | None:
+        """The board where its points are centres of discs, whose images are off-centre."""
+        return self.board if isinstance(self.board, DiscBoard) else None
+
     def timed(self, stage: str, work: Callable[[], Result]) -> Result:
         """Do the work and note how long it took."""
         start = perf_counter()
@@ -53,8 +63,8 @@ class CalibrationInput:
         return result
 
 
-def settings(model: str, skew: bool, fix: Sequence[str], prior: Sequence[str], warp: int) -> Settings:
-    """The options --model, --skew, --fix, --prior and --warp."""
+def candidates(model: str, skew: bool, fix: Sequence[str], prior: Sequence[str], warp: str) -> list[Settings]:
+    """The options --model, --skew, --fix, --prior and --warp; several where one of them says auto."""
     fixed = {}
     for word in fix:
         name, _, value = word.partition("=")
@@ -66,7 +76,20 @@ def settings(model: str, skew: bool, fix: Sequence[str], prior: Sequence[str], w
         if not (equals and sign):
             raise BadParameter("--prior", word, "a name, a mean and a standard deviation: cx=640+-5")
         priors[name.strip()] = (_number("--prior", word, mean), _number("--prior", word, sigma))
-    return Settings(model=model, skew=skew, fixed=fixed, priors=priors, warp=warp)
+    if warp != AUTO and not warp.isdecimal():
+        raise BadParameter("--warp", warp, f"auto, or a whole number from 0 to {HIGHEST_DEGREE}")
+    degrees = range(HIGHEST_DEGREE + 1) if warp == AUTO else [int(warp)]
+    named = [*fixed, *priors]
+    models = [
+        name for name, lens in LENSES.items() if {*named} <= {*AFFINE_NAMES, *lens.coefficient_names}
+    ] if model == AUTO else [model]  # fmt: skip
+    if not models:
+        raise BadParameter("--fix and --prior", ", ".join(named), "parameters that one lens model has")
+    return [
+        Settings(model=one, skew=skew, fixed=fixed, priors=priors, warp=degree)
+        for one in models
+        for degree in degrees
+    ]
 
 
 def target(board: str, size: str, square: str) -> Board:

@@ -7,19 +7,24 @@ from pathlib import Path
 from typing import Any
 
 from vision_robot.calibrate import CalibrationResult
+from vision_robot.calibrate.advice import advice
+from vision_robot.calibrate.judgement import Judgement
+from vision_robot.calibrate.selection import Selection
 from vision_robot.evaluate.projection import projection_error
 from vision_robot.formats import write_camera
 from vision_robot.geometry import Camera
 from vision_robot_cli.calibration_input import CalibrationInput
+from vision_robot_cli.calibration_verdict import Verdict
 from vision_robot_cli.output import note
 
 __all__ = ["as_json", "as_text", "write_camera_file", "write_report"]
 
 
-def as_json(result: CalibrationResult, given: CalibrationInput, seed: int) -> dict[str, Any]:
+def as_json(verdict: Verdict, given: CalibrationInput, seed: int) -> dict[str, Any]:
     """The object of `vr calibrate --json`."""
     import vision_robot
 
+    result = verdict.result
     seconds = {"detect": 0.0, "solve": 0.0, **given.seconds}
     return {
         "camera": asdict(result.camera),
@@ -60,6 +65,8 @@ def as_json(result: CalibrationResult, given: CalibrationInput, seed: int) -> di
         "board_warp_rms_m": (result.warp.displacement**2).sum(axis=1).mean() ** 0.5
         if len(result.warp)
         else 0.0,
+        "judgement": _judged(verdict.judgement),
+        "selection": _selected(verdict.selection) if verdict.selection else None,
         "image_size_assumed": given.size_assumed,
         "truth": _against(result.camera, given.truth) if given.truth else None,
         "seed": seed if given.truth else None,
@@ -84,8 +91,60 @@ def _against(camera: Camera, truth: Camera) -> dict[str, Any]:
     }
 
 
-def as_text(result: CalibrationResult, given: CalibrationInput) -> str:
+def _judged(judgement: Judgement) -> dict[str, Any]:
+    held_out, halves, views = judgement.held_out, judgement.halves, judgement.next_views
+    drawn, budget, moved = judgement.bootstrap, judgement.error_budget, judgement.influence
+    return {
+        "held_out_px": {"rms": held_out.rms_px, "standard_error": held_out.standard_error_px}
+        if held_out
+        else None,
+        "halves": {"ratio": halves.ratio, "chance": halves.chance, "honest": halves.honest}
+        if halves
+        else None,
+        "bootstrap": {
+            "ratio": drawn.typical_ratio,
+            "chance": drawn.chance,
+            "honest": drawn.honest,
+            "sigma": dict(zip(drawn.names, drawn.sigma, strict=True)),
+        }
+        if drawn
+        else None,
+        "influence_px": dict(zip(moved.images, moved.moved_px, strict=True)) if moved else None,
+        "error_budget": {
+            "lines": [asdict(line) for line in budget.lines],
+            "total_px": budget.total_px,
+            "total_mm": budget.total_mm,
+            "distance_mm": 1000 * budget.distance_m,
+        }
+        if budget
+        else None,
+        "next_views": {
+            "sigma_px": views.sigma_px,
+            "views": [
+                {"words": words, "alone_px": alone, "together_px": together}
+                for words, alone, together in zip(views.words, views.alone_px, views.together_px, strict=True)
+            ],
+        }
+        if views
+        else None,
+        "unanswered": judgement.unanswered,
+    }
+
+
+def _selected(selection: Selection) -> dict[str, Any]:
+    rows = zip(selection.settings, selection.rms_px, selection.held_out_px, selection.why, strict=True)
+    return {
+        "chosen": {"model": selection.chosen.model, "warp": selection.chosen.warp},
+        "candidates": [
+            {"model": one.model, "warp": one.warp, "rms_px": rms, "held_out_px": held_out, "why": why}
+            for one, rms, held_out, why in rows
+        ],
+    }
+
+
+def as_text(verdict: Verdict, given: CalibrationInput) -> str:
     """The result for a person at a terminal."""
+    result = verdict.result
     camera, truth = result.camera, given.truth
     corners_lost = sum(r.corner is not None for r in result.rejected)
     lines = [
@@ -121,6 +180,9 @@ def as_text(result: CalibrationResult, given: CalibrationInput) -> str:
             lines.append(f"left out: {r.image}: {r.reason}")
     if corners_lost:
         lines.append(f"left out: {corners_lost} single corner(s) farther off than noise explains")
+    lines += ["", *(f"- {said}" for said in (*verdict.judgement.sentences, *advice(result)))]
+    if verdict.judgement.next_views:
+        lines.append(f"- next: {verdict.judgement.next_views.words[0]}")
     return "\n".join(lines)
 
 
@@ -128,16 +190,18 @@ def _why(name: str, result: CalibrationResult) -> str:
     return "unknown" if name in result.covariance.undetermined else "fixed"
 
 
-def write_report(result: CalibrationResult, given: CalibrationInput, path: Path, seed: int) -> None:
+def write_report(verdict: Verdict, given: CalibrationInput, path: Path, seed: int) -> None:
     """Write --report."""
     from vision_robot.report.calibration import calibration_page
     from vision_robot.report.page import write_page
 
     page = calibration_page(
-        result,
+        verdict.result,
         board=given.board,
         truth=given.truth,
         images=given.pictures,
+        judgement=verdict.judgement,
+        selection=verdict.selection,
         command=shlex.join(["vr", *sys.argv[1:]]),
         seed=seed if given.truth else None,
     )

@@ -18,6 +18,10 @@ class Command(NamedTuple):
 
 
 COMMANDS: dict[str, Command] = {
+    "board": Command(
+        "vision_robot_cli.board:board",
+        "Write a printable calibration target to scale: PDF, SVG or PNG.",
+    ),
     "calibrate": Command(
         "vision_robot_cli.calibrate:calibrate",
         "Calibrate a camera from photos, a video, corner files or, with nothing given, a rendered set.",

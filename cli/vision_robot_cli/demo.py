@@ -23,17 +23,16 @@ def demo(
     Example: vr demo -o demo
     """
     from vision_robot.calibrate import Settings
-    from vision_robot.calibrate import calibrate as solve
     from vision_robot_cli import calibration_input, calibration_output
+    from vision_robot_cli.calibration_verdict import reached
     from vision_robot_cli.output import emit_json, note
 
     given = calibration_input.rendered_folder(out / "boards", views, seed)
-    settings = Settings()
-    result = given.timed("solve", lambda: solve(given.corners, given.points, given.size, settings))
-    calibration_output.write_camera_file(result, out / "camera.yaml", None)
-    calibration_output.write_report(result, given, out / "report.html", seed)
+    verdict = reached(given, [Settings()], seed)
+    calibration_output.write_camera_file(verdict.result, out / "camera.yaml", None)
+    calibration_output.write_report(verdict, given, out / "report.html", seed)
     if json:
-        emit_json("demo", {"calibration": calibration_output.as_json(result, given, seed), "out": out})
+        emit_json("demo", {"calibration": calibration_output.as_json(verdict, given, seed), "out": out})
     else:
-        print(calibration_output.as_text(result, given))
+        print(calibration_output.as_text(verdict, given))
     note(f"open {(out / 'report.html').resolve().as_uri()}")

@@ -30,9 +30,9 @@ def test_a_good_calibration_gets_none(seed):
 
 def test_too_few_views_for_what_is_wanted():
     result = solved(make_views(GOOD, 15))
-    (sentence,) = advice(result, wanted_px=0.2)
+    sentence, *others = advice(result, wanted_px=0.2)
     assert "0.38 px, 0.2 px are asked for: about 40 more" in sentence
-    assert advice(result) == []
+    assert advice(result) == others
     with pytest.raises(BadParameter, match="wanted"):
         advice(result, wanted_px=0.0)
 
@@ -41,7 +41,7 @@ def test_a_part_of_the_picture_without_corners_is_named():
     views = make_views(CAMERAS["brown5"], 80, seed=3)
     corners = [v for v in views.corners if v.pixels[:, 0].max() < 900][:12]
     (sentence,) = said(advice(solved(views, corners)), "No corner was seen")
-    assert "right edge (" in sentence
+    assert "upper right corner (" in sentence
     assert "left" not in sentence
 
 
@@ -55,11 +55,13 @@ def test_little_tilt_and_tilts_in_one_direction():
     assert "upper or lower edge" in sentence
 
 
-def test_boards_of_one_size():
-    views = make_views(GOOD, 100, seed=1, tilt=0.25)
-    spans = np.array([np.linalg.norm(np.ptp(v.pixels, axis=0)) for v in views.corners])
-    alike = [v for v, s in zip(views.corners, spans, strict=True) if 0.93 < s / np.median(spans) < 1.07]
-    assert said(advice(solved(views, alike)), "same size in all views")
+def test_boards_at_one_distance():
+    views = make_views(GOOD, 100, seed=1, tilt=0.3)
+    distance = np.linalg.norm(views.cam_from_board.apply(views.board.mean(axis=0)[None])[:, 0], axis=1)
+    alike = [v for v, d in zip(views.corners, distance, strict=True) if 0.75 < d < 0.85]
+    assert len(alike) > 10
+    (sentence,) = said(advice(solved(views, alike)), "as far away as the nearest")
+    assert "1.1" in sentence
 
 
 def test_a_bad_view_is_named():
@@ -71,9 +73,11 @@ def test_a_bad_view_is_named():
 
 
 def test_a_model_too_rich():
-    sentences = advice(solved(make_views(GOOD, 12), model="brown8"))
-    assert said(sentences, "do not differ from zero by two sigma")
-    assert said(sentences, "k", "are correlated by 0.99") + said(sentences, "are correlated by 1.0000")
+    """Six coefficients for a lens that needs none: what cannot be told is named, not called tied."""
+    sentences = advice(solved(make_views(GOOD, 12), model="brown5"))
+    assert said(sentences, "k3 = ", "from zero by two sigma")
+    tied = advice(solved(make_views(CAMERAS["brown8"], 15, seed=0)))
+    assert said(tied, "k1 and k4 are correlated by 1.0000", "simpler model")
 
 
 def test_a_model_too_simple():

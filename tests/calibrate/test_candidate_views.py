@@ -30,7 +30,7 @@ def test_the_named_edge_is_farther_from_the_camera():
         "bottom": points[-1],
     }
     opposite = {"left": "right", "right": "left", "top": "bottom", "bottom": "top"}
-    for i in np.flatnonzero(views.away >= 0):
+    for i in map(int, np.flatnonzero(views.away >= 0)):
         away = list(AWAY)[views.away[i]]
         far, near = (
             np.linalg.norm(views.cam_from_board[i].apply(edges[name]), axis=1).mean()
@@ -53,7 +53,7 @@ def test_the_words_name_the_place():
     camera = CAMERAS["pinhole"]
     views = candidate_views(camera, BOARD)
     small = views.extent.max(axis=1) < 0.4
-    for i in np.flatnonzero(small):
+    for i in map(int, np.flatnonzero(small)):
         u, v = views.pixels[i].mean(axis=0) / (camera.width, camera.height)
         words = views.words(i)
         assert ("left" in words.split(" of the picture")[0]) == (u < 0.4)

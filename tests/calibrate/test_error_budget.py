@@ -1,4 +1,4 @@
-"""The error budget, each cause switched on alone: the right line dominates, and the total is the true error."""
+"""The error budget, each cause switched on alone: the right line dominates, the total is the true error."""
 
 import numpy as np
 import pytest

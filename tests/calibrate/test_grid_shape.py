@@ -22,7 +22,7 @@ def test_circle_has_its_curvature():
     expected = np.broadcast_to(1 / radius, (6, 9)).ravel()
     assert np.abs(shape.curvature[:, 0]) == pytest.approx(expected, rel=0.02)
     assert np.abs(shape.curvature[:, 1]).max() < 2e-4
-    assert np.linalg.norm(shape.edges[:, 1], axis=1) == pytest.approx(20, rel=1e-3)
+    assert np.linalg.norm(shape.edges[:, 1], axis=1) == pytest.approx(20, rel=2e-3)
 
 
 def test_edges_and_bends_are_the_projections_own():
@@ -35,8 +35,9 @@ def test_edges_and_bends_are_the_projections_own():
         first, second = (ahead - behind) / 2, ahead + behind - 2 * here
         bend = (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / np.linalg.norm(first, axis=1) ** 3
         assert np.abs(shape.edges[:, axis] - first / 0.3).max() < 0.15
-        # Over a window of 20 px, this much bend is 0.02 px of sag.
-        assert np.abs(shape.curvature[:, axis] - bend).max() < 1e-4
+        # Within 15 px of a corner, a bend of 1e-4 / px is 0.01 px of sag.
+        assert np.median(np.abs(shape.curvature[:, axis] - bend)) < 3e-5
+        assert np.abs(shape.curvature[:, axis] - bend).max() < 2.5e-4
 
 
 def test_small_grid_is_straight():

@@ -71,14 +71,6 @@ def test_it_beats_a_typical_candidate(views, advised):
     assert advised.sigma_px - advised.alone_px[0] > 2 * (advised.sigma_px - np.median(others))
 
 
-def test_an_empty_quarter_of_the_picture_is_where_to_hold_the_board():
-    views = make_views(CAMERAS["brown5"], 60, seed=3)
-    left = [v for v in views.corners if v.pixels[:, 0].max() < 860][:10]
-    assert len(left) >= 5
-    advised = next_views(solved(views, left), views.board, count=1)
-    assert "right" in advised.words[0].split(" of the picture")[0]
-
-
 def test_a_board_of_free_shape_counts_too(views):
     result = solved(views, warp=2)
     advised = next_views(result, views.board, count=2)

@@ -6,10 +6,9 @@ import cv2
 import numpy as np
 import pytest
 
+from tests.chessboard_pictures import BOARD, CAMERA, FINE, Picture, disc, picture, posed
 from vision_robot.calibrate.boards.chessboard_order import canonical_grid
 from vision_robot.calibrate.saddle import LOST_PX, fit_grid
-
-from tests.chessboard_pictures import BOARD, CAMERA, FINE, Picture, disc, picture, posed
 
 SIZE = (BOARD.columns, BOARD.rows)
 SHAPE = (BOARD.rows, BOARD.columns, 2)
@@ -32,28 +31,19 @@ def gaussian(sigma_px: float) -> np.ndarray:
 @cache
 def degraded(kind: str) -> tuple[Picture, ...]:
     """Two pictures under one kind of trouble, all seen through a lens that bends lines."""
-    near = [posed(seed) for seed in (1, 2)]
     uu, vv = np.meshgrid(np.linspace(0, 1, CAMERA.width), np.linspace(0, 1, CAMERA.height))
-    if kind == "clean":
-        return tuple(picture(p) for p in near)
-    if kind == "noise":
-        return tuple(picture(p, blur=gaussian(0.5), noise=10, seed=i) for i, p in enumerate(near))
-    if kind == "blur":
-        return tuple(picture(p, blur=disc(4), noise=1) for p in near)
-    if kind == "strong blur":
-        return tuple(picture(p, blur=disc(6), noise=1) for p in near)
-    if kind == "low contrast":
-        return tuple(
-            picture(p, blur=gaussian(0.7), levels=(113, 143), noise=4, seed=i) for i, p in enumerate(near)
-        )
-    if kind == "oblique":
-        poses = [posed(seed, tilt_deg=(60, 68), distance_m=0.27) for seed in (3, 4)]
-        return tuple(picture(p, blur=gaussian(0.6), noise=1) for p in poses)
-    if kind == "small squares":
-        poses = [posed(seed, distance_m=0.8) for seed in (5, 6)]
-        return tuple(picture(p, blur=gaussian(0.5), noise=1) for p in poses)
-    assert kind == "uneven light"
-    return tuple(picture(p, blur=gaussian(0.7), light=0.35 + 0.75 * uu * vv, noise=1) for p in near)
+    poses = {"oblique": {"tilt_deg": (60, 68), "distance_m": 0.27}, "small squares": {"distance_m": 0.8}}
+    trouble = {
+        "clean": {},
+        "noise": {"blur": gaussian(0.5), "noise": 10},
+        "blur": {"blur": disc(4), "noise": 1},
+        "strong blur": {"blur": disc(6), "noise": 1},
+        "low contrast": {"blur": gaussian(0.7), "levels": (113, 143), "noise": 4},
+        "oblique": {"blur": gaussian(0.6), "noise": 1},
+        "small squares": {"blur": gaussian(0.5), "noise": 1},
+        "uneven light": {"blur": gaussian(0.7), "light": 0.35 + 0.75 * uu * vv, "noise": 1},
+    }
+    return tuple(picture(posed(seed, **poses.get(kind, {})), **trouble[kind], seed=seed) for seed in (3, 4))
 
 
 KINDS = [

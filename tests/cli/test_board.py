@@ -1,13 +1,14 @@
 """`vr board` writes what was asked for, to scale, and refuses the impossible in one line."""
 
 import json
+import re
 
 import pytest
 import typer
 from typer.testing import CliRunner
-from vision_robot_cli.board import board
 
 from vision_robot.errors import BadParameter, UnwritableOutput
+from vision_robot_cli.board import board
 
 app = typer.Typer()
 app.command("board")(board)
@@ -67,8 +68,7 @@ def test_bad_input_is_refused_and_nothing_is_written(words, message, tmp_path, m
     monkeypatch.chdir(tmp_path)
     result = run(*words)
     assert isinstance(result.exception, BadParameter)
-    assert result.exception.args
-    pytest.raises(BadParameter, lambda: (_ for _ in ()).throw(result.exception)).match(message)
+    assert re.search(message, str(result.exception))
     assert not list(tmp_path.iterdir())
 
 

@@ -144,7 +144,9 @@ def test_debug_after_two_dashes_is_an_argument(a_command):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes end differently there")
 def test_a_reader_that_leaves_early_hears_nothing():
-    script = f"{shlex.quote(sys.executable)} -c 'from vision_robot_cli.main import main; main()' --help | true"
+    script = (
+        f"{shlex.quote(sys.executable)} -c 'from vision_robot_cli.main import main; main()' --help | true"
+    )
     ended = subprocess.run(["/bin/sh", "-c", script], capture_output=True, text=True, check=False)
     assert ended.stderr == ""
 

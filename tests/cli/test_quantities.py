@@ -1,15 +1,15 @@
 """Quantities as people type them."""
 
 import pytest
-from vision_robot_cli.quantities import length_m, whole_pair
 
 from vision_robot.errors import BadParameter
+from vision_robot_cli.quantities import length_m, whole_pair
 
 
 @pytest.mark.parametrize(
     ("text", "metres"),
-    [("25mm", 0.025), ("2.5cm", 0.025), ("0.025m", 0.025), ("1in", 0.0254), ('1"', 0.0254), (" 25 MM ", 0.025),
-     ("250um", 2.5e-4), ("250µm", 2.5e-4), ("2.5e1mm", 0.025), ("+3m", 3)],
+    [("25mm", 0.025), ("2.5cm", 0.025), ("0.025m", 0.025), ("1in", 0.0254), ('1"', 0.0254),
+     (" 25 MM ", 0.025), ("250um", 2.5e-4), ("250µm", 2.5e-4), ("2.5e1mm", 0.025), ("+3m", 3)],
 )  # fmt: skip
 def test_lengths(text, metres):
     """Units of every day; exactly, not to the last bit but one."""

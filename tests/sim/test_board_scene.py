@@ -60,7 +60,7 @@ def displacement(camera: Camera, cam_from_board: SE3, image, corners, half: int 
 
 @pytest.mark.parametrize("name", CAMERAS)
 def test_corners_sit_on_the_analytic_projection(name):
-    """Picture against exact picture: <= 0.03 px rms, mean <= 0.006 px; detector: <= 0.03 and <= 0.01 px."""
+    """Picture against exact picture: <= 0.03 px rms, mean <= 0.01 px; detector: <= 0.03 and <= 0.01 px."""
     camera, board = CAMERAS[name], chess_print()
     poses = board_poses(camera, board.box_m, 4, seed=3)
     shifts, errors = [], []
@@ -72,7 +72,7 @@ def test_corners_sit_on_the_analytic_projection(name):
         errors.append(found.pixels - truth[found.ids])
     shifts, errors = np.concatenate(shifts), np.concatenate(errors)
     assert np.sqrt(np.mean(shifts**2)) < 0.03
-    assert np.abs(shifts.mean(axis=0)).max() < 0.006
+    assert np.abs(shifts.mean(axis=0)).max() < 0.01
     assert np.sqrt(np.mean(errors**2)) < 0.03
     assert np.abs(errors.mean(axis=0)).max() < 0.01
 

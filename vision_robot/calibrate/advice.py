@@ -4,7 +4,7 @@ All sentences are about something that is wrong or missing; a calibration that n
 gets none. What matters most comes first.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -27,8 +27,8 @@ REGIONS = (
 )
 """Of the picture's 3x3 parts; a corner or edge counts as its outer half."""
 
-UNSEEN_FACTOR = 4.0
-"""Times the uncertainty of the picture's best third, from which a part without corners is a gap."""
+UNSEEN_FACTOR = 2.0
+"""Times the uncertainty in the best third of the picture, from which a part without corners is a gap."""
 LITTLE_TILT = np.radians(20)
 FAR_TO_NEAR = 1.25
 MANY_MORE = 10
@@ -71,7 +71,11 @@ def _enough(result: CalibrationResult, wanted_px: float) -> Iterator[str]:
         like = f"about {more} more views like these {views} would do, fewer chosen as the next best view."
         yield (
             f"The projection is known to {sigma:.2g} px, {wanted_px:.2g} px are asked for: "
-            + (like if more <= MANY_MORE * views else f"no number of views like these {views} will do; choose others.")
+            + (
+                like
+                if more <= MANY_MORE * views
+                else f"no number of views like these {views} will do; choose others."
+            )
         )
 
 
@@ -101,8 +105,8 @@ def _views(result: CalibrationResult) -> Iterator[str]:
     for i in np.argsort(-rms):
         if rms[i] > limit[i]:
             yield (
-                f"View {result.corners[i].image} has an rms of {rms[i]:.2g} px, {rms[i] / median:.1f} times the "
-                "median view: look for blur or a bent board, and take it again."
+                f"View {result.corners[i].image} has an rms of {rms[i]:.2g} px, {rms[i] / median:.1f} times "
+                "the median view: look for blur or a bent board, and take it again."
             )
 
 
@@ -129,8 +133,8 @@ def _coverage(result: CalibrationResult) -> Iterator[str]:
     folded = 1 - float(np.isfinite(projection_covariance(result, _grid(size))[..., 0, 0]).mean())
     if folded:
         yield (
-            f"The fitted lens folds over in {100 * folded:.0f} % of the picture, where nothing can be measured: "
-            "show the board there, or take a simpler model."
+            f"The fitted lens folds over in {100 * folded:.0f} % of the picture, where nothing can be "
+            "measured: show the board there, or take a simpler model."
         )
 
 
@@ -148,8 +152,9 @@ def _tilt(result: CalibrationResult) -> Iterator[str]:
     if least < 0.15**2 * most:
         across = np.linalg.eigh(lean.T @ lean)[1][:, 0]
         edges = "left or right" if abs(across[0]) > abs(across[1]) else "upper or lower"
+        times = np.sqrt(most / max(least, 1e-12))
         yield (
-            f"The boards lean {np.sqrt(most / max(least, 1e-12)):.0f} times as much in one direction as across it: "
+            f"The boards lean {times:.0f} times as much in one direction as across it: "
             f"add views with the {edges} edge of the board away from the camera."
         )
 
@@ -159,8 +164,8 @@ def _distance(result: CalibrationResult) -> Iterator[str]:
     ratio = float(np.nanmax(distance) / np.nanmin(distance))
     if ratio < FAR_TO_NEAR:
         yield (
-            f"The farthest board stood only {ratio:.2f} times as far away as the nearest: add nearer and farther "
-            "ones, which tell more of the lens."
+            f"The farthest board stood only {ratio:.2f} times as far away as the nearest: add nearer and "
+            "farther ones, which tell more of the lens."
         )
 
 
@@ -175,7 +180,11 @@ def _ties(result: CalibrationResult) -> Iterator[str]:
             affine = (first in AFFINE_NAMES) + (names[j] in AFFINE_NAMES)
             limit = {0: TIED_LENS, 1: TIED}.get(affine, np.inf)  # fx and fy always move together
             if abs(correlation[i, j]) > limit:
-                cure = "a simpler model may do" if affine == 0 else "views with more tilt and at the rim part them"
+                cure = (
+                    "a simpler model may do"
+                    if affine == 0
+                    else "views with more tilt and at the rim part them"
+                )
                 yield f"{names[j]} and {first} are correlated by {correlation[i, j]:.4f}: {cure}."
 
 
@@ -206,5 +215,5 @@ def _grid(size: Array) -> Float[Array, "h w 2"]:
     return np.stack(np.meshgrid(u, v), axis=-1)
 
 
-def _listed(names: list[str] | tuple[str, ...]) -> str:
+def _listed(names: Sequence[str]) -> str:
     return " and ".join(", ".join(names).rsplit(", ", 1)) if len(names) > 1 else names[0]

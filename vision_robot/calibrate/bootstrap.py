@@ -137,7 +137,9 @@ def bootstrap(
     ratio[free[told]] = np.sqrt(np.mean(scaled**2, axis=0) / stated)[told]
     by_chance = np.mean(np.mean(imagined**2, axis=1) / stated, axis=1, where=told)
     chance = float(np.mean(by_chance >= np.nanmean(ratio**2)))
-    return Bootstrap(blocks.views, names, estimate, draws, ratio, chance, _one_step_error(blocks, weights, steps))
+    return Bootstrap(
+        blocks.views, names, estimate, draws, ratio, chance, _one_step_error(blocks, weights, steps)
+    )
 
 
 def _drawn(blocks: ViewBlocks, count: int, rng: np.random.Generator) -> Float[Array, "r views"]:

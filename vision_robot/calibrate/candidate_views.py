@@ -134,7 +134,7 @@ def _outline(points: Float[Array, "n 3"]) -> Float[Array, "m 3"]:
     first = points[np.argsort(np.linalg.norm(points - points[0], axis=1))[1]]
     pitch = np.linalg.norm(first - points[0])
     low, high = points[:, :2].min(axis=0) - pitch, points[:, :2].max(axis=0) + pitch
-    s = np.linspace(0, 1, 5)[:-1]
+    s = np.linspace(0, 1, 9)[:-1]
     o = np.zeros_like(s)
     x, y = np.concatenate([s, o + 1, 1 - s, o]), np.concatenate([o, s, o + 1, 1 - s])
     return np.stack([low[0] + (high - low)[0] * x, low[1] + (high - low)[1] * y, np.zeros_like(x)], axis=1)

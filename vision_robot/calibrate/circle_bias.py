@@ -1,14 +1,14 @@
 """The centre of a disc's image is not the image of the disc's centre.
 
 A disc under perspective is seen as an ellipse whose centre lies off the projected centre of the disc
-(Heikkilä & Silvén 1997, eq. 8), by an amount that grows with the disc's size and tilt; a lens bends the outline
-further. A detector measures the outline's centre; calibration wants the projected centre. Given a
+(Heikkilä & Silvén 1997, eq. 8), by an amount that grows with the disc's size and tilt; a lens bends the
+outline further. A detector measures the outline's centre; calibration wants the projected centre. Given a
 camera and a pose the offset can be computed, and a calibration from uncorrected centres is good enough to
 compute it: so calibrate, correct, and calibrate again.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -24,6 +24,7 @@ OUTLINE_POINTS = 48
 """Points on an outline: the fit of an ellipse to them is exact to 1e-6 px for discs of 60 px."""
 
 
+@runtime_checkable
 class DiscBoard(Protocol):
     """A board whose points are centres of discs."""
 
@@ -86,8 +87,9 @@ def calibrate_circles(
     """Calibrate from discs: `calibrate`, correct the centres, and again, up to `rounds` corrections.
 
     `calibrate` is the solver with all its options bound; views it rejects stay uncorrected, and are
-    offered to it again. Views are told apart by ``Corners.image``, which must differ. Ends when no centre moves by
-    more than `tolerance_px`. Raises BadParameter for two views of one name, and whatever `calibrate` raises.
+    offered to it again. Views are told apart by ``Corners.image``, which must differ. Ends when no centre
+    moves by more than `tolerance_px`. Raises BadParameter for two views of one
+    name, and whatever `calibrate` raises.
     """
     names = [view.image for view in corners]
     if len(set(names)) != len(names):
@@ -154,11 +156,9 @@ def _ellipse_centres(outlines: Float[Array, "n k 2"]) -> Float[Array, "n 2"]:
         F = np.linalg.norm(y, axis=2)
         slope = np.linalg.norm(z, axis=2) / F
         # dF = y . d(W q) / F
-        J = np.stack(
-            [-z[..., 0], -z[..., 1], y[..., 0] * q[..., 0]]
-            + [y[..., 0] * q[..., 1] + y[..., 1] * q[..., 0], y[..., 1] * q[..., 1]],
-            axis=-1,
-        )
+        across = y[..., 0] * q[..., 1] + y[..., 1] * q[..., 0]
+        columns = [-z[..., 0], -z[..., 1], y[..., 0] * q[..., 0], across, y[..., 1] * q[..., 1]]
+        J = np.stack(columns, axis=-1)
         A = J * (root / (F * slope))[..., None]
         b = root * (F - 1) / slope
         step = -np.linalg.solve(np.einsum("nki,nkj->nij", A, A), np.einsum("nki,nk->ni", A, b)[..., None])[

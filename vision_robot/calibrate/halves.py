@@ -7,7 +7,7 @@ d(q) with covariance C_A(q) + C_B(q), so that
 
 has the mean one. Each pixel is measured by its own prediction, lest the corners of the
 picture, where nothing was seen, drown the rest. A turn between the cameras' frames is
-taken out (see `picture_shift`). A ratio well above one says that views disagree by more
+taken out (see `Picture`). A ratio well above one says that views disagree by more
 than their corners' noise: the lens is not of that model, or the board is bent or moved.
 What is wrong in both halves alike stays unseen.
 """
@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vision_robot.calibrate.identifiability import identified
-from vision_robot.calibrate.picture_shift import picture_rays, shift_between, shift_per_parameter
+from vision_robot.calibrate.picture import Picture
 from vision_robot.calibrate.result import CalibrationResult
 from vision_robot.calibrate.solution import solution
 from vision_robot.calibrate.view_blocks import ViewBlocks
@@ -112,28 +112,27 @@ def _calibrated(blocks: ViewBlocks, weights: Float[Array, "views"]) -> tuple[Cam
 
 def _compared(first: tuple[Camera, Array], second: tuple[Camera, Array]) -> tuple[float, float, float]:
     """Distance found and predicted, both root mean square over the picture, and ratio of a split."""
-    rays = picture_rays(first[0])
-    found = np.sum(shift_between(first[0], second[0], rays) ** 2, axis=-1)
-    predicted = sum(
-        np.einsum("nip,pq,niq->n", shift, covariance, shift)
-        for shift, covariance in ((shift_per_parameter(camera, rays), C) for camera, C in (first, second))
-    )
-    known = np.isfinite(found) & np.isfinite(predicted)
+    one, other = Picture.of(first[0]), Picture.of(second[0])
+    # Both on the same grid, but each with the pixels where it has a ray.
+    place, i, j = np.intersect1d(one.pixels @ [1, 1j], other.pixels @ [1, 1j], return_indices=True)
+    predicted = one.variance(first[1])[i] + other.variance(second[1])[j]
+    found = np.sum(one.difference(second[0])[i] ** 2, axis=1)
+    known = np.isfinite(found)
+    if not (len(place) and known.any()):
+        raise NoConvergence("the cameras of two halves share no ray")
     found, predicted = found[known], predicted[known]
     return np.sqrt(found.mean()), np.sqrt(predicted.mean()), np.sqrt(np.mean(found / predicted))
 
 
 def _imagined(blocks: ViewBlocks, halves: Float[Array, "splits views"], rng: np.random.Generator) -> Array:
     """Ratios that right models give for the same splits, to first order."""
-    camera = blocks.state.camera
     weights = np.concatenate([halves, 1 - halves])
     steps = blocks.imagined_steps(weights, IMAGINED, rng)
     apart = steps[:, : len(halves)] - steps[:, len(halves) :]
     spread = blocks.spread(weights) + blocks.variance * np.eye(steps.shape[-1])
     spread = spread[: len(halves)] + spread[len(halves) :]
-    shift = shift_per_parameter(camera, picture_rays(camera))
-    shift = shift[np.isfinite(shift).all(axis=(1, 2))]
-    in_steps = shift @ blocks.parameters(np.eye(steps.shape[-1]))[:, : shift.shape[-1]].T
+    gain = Picture.of(blocks.state.camera).gain
+    in_steps = gain @ blocks.parameters(np.eye(steps.shape[-1]))[:, : gain.shape[-1]].T
     predicted = np.einsum("nik,skl,nil->sn", in_steps, spread, in_steps)
     # The mean over the picture of |d|^2 / predicted is a quadratic form in the step.
     form = np.einsum("nik,nil,sn->skl", in_steps, in_steps, 1 / predicted) / len(in_steps)

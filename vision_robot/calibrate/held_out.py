@@ -4,12 +4,11 @@ A held-out view says nothing about its own pose, so the pose is fitted to it and
 else. That takes six of its 2n measured numbers, and under a right camera the sum of
 squares left has the mean ``s^2 (2n - 6)`` where corners scatter with s per axis. Hence
 
-    variance of view v = sum |e|^2 / (2 n_v - 6),
+    rms of view v = sqrt(2 sum |e|^2 / (2 n_v - 6))
 
-with e in units of each corner's sigma, and as a length per point, both axes together,
-``rms = sqrt(2 sum |e|^2 / sum (2n - 6))`` in pixels. Noise alone gives it the same mean at
-every number of parameters; what a camera took for signal and was noise, or a camera too
-simple for its lens, makes it larger.
+is a length per point, both axes together, in pixels, that noise alone brings to sqrt(2) s
+whatever the number of parameters; what a camera took for signal and was noise, or a camera
+too simple for its lens, makes it larger.
 """
 
 from collections.abc import Sequence
@@ -30,6 +29,7 @@ from vision_robot.calibrate.start import poses_from_bearings
 from vision_robot.calibrate.state import State
 from vision_robot.calibrate.view_blocks import ViewBlocks
 from vision_robot.calibrate.warp import Warp
+from vision_robot.calibrate.weighting import trust
 from vision_robot.errors import BadParameter, NoConvergence, TooFewViews
 from vision_robot.geometry import Camera
 from vision_robot.types import Array, Float
@@ -39,8 +39,8 @@ __all__ = ["HeldOut", "cross_validate", "held_out", "hold_back"]
 FEWEST_LEFT = 3
 """Views that must be left to calibrate from."""
 
-TINY = 1e-20
-"""Variance [px^2] of rounding: two cameras that leave no more than that are alike."""
+TINY_PX = 1e-9
+"""Rounding: two cameras that leave no more than that are alike."""
 
 SETTLED = 0.1
 """A fold's camera may be so many standard deviations from its minimum: a hundredth of one parameter's price."""
@@ -50,14 +50,12 @@ SETTLED = 0.1
 class HeldOut:
     """Errors on views that the camera was not fitted to.
 
-    `rms_px` (views,) per point, both axes together, corrected for the pose; `variance`
-    (views,) the same squared, per axis and in units of the corners' sigma; `freedom`
-    (views,) = 2n - 6. Infinite where no pose brings the board before the camera.
+    `view_rms_px` (views,) per point, both axes together, corrected for the pose; infinite
+    where no pose brings the board before the camera. `freedom` (views,) = 2n - 6.
     """
 
     images: tuple[str, ...]
     view_rms_px: Float[Array, "views"]
-    variance: Float[Array, "views"]
     freedom: Float[Array, "views"]
     folds: int = 1
 
@@ -80,7 +78,9 @@ class HeldOut:
         """
         if self.images != other.images or not np.array_equal(self.freedom, other.freedom):
             raise BadParameter("held-out views", len(self.images), "the same as those compared with")
-        return _mean_and_error(np.log((self.variance + TINY) / (other.variance + TINY)) / 2, self.freedom)
+        return _mean_and_error(
+            np.log((self.view_rms_px + TINY_PX) / (other.view_rms_px + TINY_PX)), self.freedom
+        )
 
 
 def held_out(
@@ -102,6 +102,13 @@ def held_out(
             f"corners of {few[0].image}", len(few[0]), "four or more, to find a pose and judge it"
         )
     start = State(camera, poses_from_bearings(camera, seen), warp)
+    if np.ptp(seen.sigma_px[seen.present]) > 1e-9:
+        # How far the detector's word is trusted shows in equally weighted residuals first.
+        equal = seen.with_weight(seen.present.astype(float))
+        lengths = np.linalg.norm(_pose_residuals(start, equal), axis=1)[seen.present]
+        if np.isfinite(lengths).all():
+            sigma = trust(lengths, seen.sigma_px[seen.present]).sigma(seen.sigma_px)
+            seen = seen.with_weight(np.where(seen.present, 1 / sigma, 0.0))
     return _judged(start, seen, tuple(view.image for view in corners))
 
 
@@ -154,7 +161,7 @@ def hold_back(
     order = np.argsort(np.concatenate([out for out, _ in parts]))
     together = {
         name: np.concatenate([getattr(part, name) for _, part in parts])[order]
-        for name in ("view_rms_px", "variance", "freedom")
+        for name in ("view_rms_px", "freedom")
     }
     return HeldOut(tuple(view.image for view in result.corners), folds=len(weights), **together)
 
@@ -169,11 +176,9 @@ def _split(views: int, folds: int, seed: int) -> Array:
 
 def _judged(start: State, seen: Observations, images: tuple[str, ...]) -> HeldOut:
     """Camera and warp of a state on views, their poses refined from those of the state."""
-    error = _pose_residuals(start, seen)
+    square = np.sum(_pose_residuals(start, seen) ** 2, axis=(1, 2))
     freedom = 2.0 * seen.present.sum(axis=1) - 6
-    square = np.sum(error**2, axis=1)
-    weighted = np.sum(square * seen.weight**2, axis=1)
-    return HeldOut(images, np.sqrt(2 * square.sum(axis=1) / freedom), weighted / freedom, freedom)
+    return HeldOut(images, np.sqrt(2 * square / freedom), freedom)
 
 
 def _pose_residuals(start: State, seen: Observations) -> Float[Array, "views 2 n"]:

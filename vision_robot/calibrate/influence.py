@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vision_robot.calibrate.picture_shift import picture_rays, rms_px, shift_per_parameter
+from vision_robot.calibrate.picture import Picture
 from vision_robot.calibrate.result import CalibrationResult
 from vision_robot.calibrate.solution import solution
 from vision_robot.calibrate.view_blocks import ViewBlocks
@@ -61,7 +61,9 @@ class Influence:
         for i in np.argsort(-self.moved_px):
             image, moved = self.images[i], self.moved_px[i]
             if np.isinf(moved):
-                said.append(f"without {image} the other views leave something undetermined: add views like it")
+                said.append(
+                    f"without {image} the other views leave something undetermined: add views like it"
+                )
             elif image in self.decisive:
                 said.append(
                     f"{image} decides much alone: without it the picture moves by {moved:.2g} px "
@@ -84,14 +86,12 @@ def influence(result: CalibrationResult, board_points: Float[Array, "m 3"]) -> I
     others = 1 - np.eye(blocks.views)
     steps, spread = blocks.steps(others), blocks.spread(others)
     change = blocks.parameters(steps)
-    in_picture = shift_per_parameter(result.camera, picture_rays(result.camera))
-    in_picture = in_picture[np.isfinite(in_picture).all(axis=(1, 2))]
-    p = in_picture.shape[-1]
-    in_steps = in_picture @ blocks.parameters(np.eye(steps.shape[1]))[:, :p].T
-    moved = rms_px(np.tensordot(change[:, :p], in_picture, axes=([1], [2])))
-    # Mean over the picture of the trace of each pixel's covariance.
-    mean_square = np.einsum("nik,nil->kl", in_steps, in_steps) / len(in_steps)
-    expected = np.sqrt(np.maximum(np.einsum("kl,vkl->v", mean_square, spread), 0))
+    M = Picture.of(result.camera).weight()
+    p = len(M)
+    in_camera = blocks.parameters(np.eye(steps.shape[1]))[:, :p].T
+    M_steps = in_camera.T @ M @ in_camera
+    moved = np.sqrt(np.maximum(np.einsum("vp,pq,vq->v", change[:, :p], M, change[:, :p]), 0))
+    expected = np.sqrt(np.maximum(np.einsum("kl,vkl->v", M_steps, spread), 0))
     lost = ~np.isfinite(moved)
     cook = np.sum(steps**2, axis=1) / (steps.shape[1] * blocks.variance)
     return Influence(
@@ -100,5 +100,5 @@ def influence(result: CalibrationResult, board_points: Float[Array, "m 3"]) -> I
         expected_px=np.where(lost, np.inf, expected),
         cook=np.where(lost, np.inf, cook),
         change=change,
-        sigma_px=float(np.sqrt(blocks.variance * np.trace(mean_square))),
+        sigma_px=float(np.sqrt(blocks.variance * np.trace(M_steps))),
     )

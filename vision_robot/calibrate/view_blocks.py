@@ -32,7 +32,7 @@ __all__ = ["ViewBlocks"]
 MOST_STEPS = 40
 """From a step near the minimum, a model that needs more has no minimum to speak of."""
 
-SINGULAR = 1e-9
+SINGULAR = 1e-6
 """Share of the information left, below which a choice of views leaves something undetermined."""
 
 

@@ -65,7 +65,7 @@ class Warp:
                 continue
             known.append(rest / size)
             kept.append(rest / size * np.sqrt(n))
-            names.append(f"board {'xyz'[axis]} {labels[k]}")
+            names.append(f"board {'xyz'[axis]}({labels[k]})")
         if len(kept) > 2 * n:
             raise BadParameter("degree of the board's warp", degree, f"lower for a board of {n} points")
         return cls(np.array(kept).reshape(-1, 3, n), np.zeros(len(kept)), tuple(names))
@@ -83,8 +83,12 @@ def _monomials(xy: Float[Array, "n 2"], degree: int) -> tuple[Array, list[str]]:
     centred = xy - xy.mean(axis=0)
     x, y = (centred / np.abs(centred).max()).T
     powers = [(total - j, j) for total in range(degree + 1) for j in range(total + 1)]
-    labels = [f"x^{i} y^{j}" for i, j in powers]
+    labels = [_power("x", i) + _power("y", j) or "1" for i, j in powers]
     return np.stack([x**i * y**j for i, j in powers]), labels
+
+
+def _power(name: str, exponent: int) -> str:
+    return "" if exponent == 0 else name if exponent == 1 else f"{name}^{exponent}"
 
 
 def _rigid_and_scale(points: Float[Array, "n 3"]) -> Float[Array, "7 3*n"]:

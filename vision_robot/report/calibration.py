@@ -5,11 +5,14 @@ from collections.abc import Mapping
 import numpy as np
 
 from vision_robot.calibrate.boards import Board
+from vision_robot.calibrate.judgement import Judgement
 from vision_robot.calibrate.result import CalibrationResult
+from vision_robot.calibrate.selection import Selection
 from vision_robot.geometry import Camera
 from vision_robot.report.calibration_advice import advice
 from vision_robot.report.calibration_findings import AgainstTruth, Findings, find
 from vision_robot.report.calibration_tables import parameter_table, rejection_table, view_table
+from vision_robot.report.judgement_sections import judgement_sections, selection_section
 from vision_robot.report.lens_figures import lens_figures, truth_maps, uncertainty_maps
 from vision_robot.report.page import Facts, Figures, Footer, Gallery, Page, Paragraph, Part, Remarks, Section
 from vision_robot.report.quantity import compact, with_sigma
@@ -33,6 +36,8 @@ def calibration_page(
     board: Board | None = None,
     truth: Camera | None = None,
     images: Mapping[str, Image] | None = None,
+    judgement: Judgement | None = None,
+    selection: Selection | None = None,
     title: str = "Camera calibration",
     command: str = "",
     seed: int | None = None,
@@ -44,6 +49,8 @@ def calibration_page(
         board: The target, for its outline and its description.
         truth: The camera that made the pictures, where it is known.
         images: Pictures by the names in `result.corners`; small copies are shown.
+        judgement: How far to believe it; shown where given.
+        selection: The choice of model; shown where given.
         title: Title of the page.
         command: Command line that makes the page again.
         seed: Seed of what was left to chance.
@@ -73,6 +80,10 @@ def calibration_page(
             (Figures(uncertainty_maps(findings)), Paragraph(ABOUT_UNCERTAINTY)),
         ),
     ]
+    if judgement is not None:
+        sections += judgement_sections(judgement, result.camera)
+    if selection is not None:
+        sections.append(selection_section(selection))
     if findings.truth is not None:
         sections.append(Section("Against the truth", _against(findings, findings.truth)))
     if any(result.camera.lens.coefficient_names):

@@ -1,0 +1,1 @@
+"""MuJoCo: which OpenGL, pictures with exact truth, and the scenes they show."""

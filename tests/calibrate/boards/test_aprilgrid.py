@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from tests.board_photos import facing, photo, rms, truth
 
+from tests.board_photos import facing, photo, rms, truth
 from vision_robot.calibrate.boards import board_named, raster
 from vision_robot.calibrate.boards.aprilgrid import AprilGrid
 from vision_robot.calibrate.boards.charuco import Charuco

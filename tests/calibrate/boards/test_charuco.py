@@ -3,12 +3,12 @@
 import cv2
 import numpy as np
 import pytest
-from tests.board_photos import facing, photo, rms, truth
 
+from tests.board_photos import facing, photo, rms, truth
 from vision_robot.calibrate.boards import board_named, raster
 from vision_robot.calibrate.boards.charuco import Charuco
-from vision_robot.calibrate.boards.marker import dictionary_named
 from vision_robot.calibrate.boards.chessboard import Chessboard
+from vision_robot.calibrate.boards.marker import dictionary_named
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import Camera
 
@@ -92,7 +92,7 @@ def test_hidden_corners_are_left_out():
     seen = BOARD.detect(image)
     assert seen is not None
     expected = truth(BOARD, CAMERA, pose)
-    hidden = ((expected > [300, 250]) & (expected < [519, 399])).all(axis=1)
+    hidden = np.all((expected > [300, 250]) & (expected < [519, 399]), axis=1)
     assert hidden.any()
     assert not hidden[seen.ids].any()
     assert np.abs(seen.pixels - expected[seen.ids]).max() < 0.1

@@ -104,7 +104,7 @@ def _patient(grey: Grey) -> Iterator[Attempt]:
     yield grey, (large, large), _quads(PATIENT)
     stretched = _stretched(grey)
     yield cv2.medianBlur(stretched, 5), (small, small), _quads(FILTERED)
-    yield _equalised(stretched), (small, small), _sectors(SECTOR_PATIENT)
+    yield _levelled(grey), (small, small), _sectors(SECTOR_PATIENT)
     # Magnified along one axis, foreshortened squares become squares again.
     for across, down in ((2.0, 2.0), (1.0, 2.0), (2.0, 1.0), (1.0, 3.0), (3.0, 1.0)):
         if max(across, down) * long_side <= LARGE_PX:
@@ -179,8 +179,13 @@ def _stretched(grey: Grey) -> Grey:
     return np.clip((grey - low) * scale, 0, 255).astype(np.uint8)
 
 
-def _equalised(grey: Grey) -> Grey:
-    return cv2.createCLAHE(clipLimit=4.0, tileGridSize=(8, 8)).apply(grey)
+def _levelled(grey: Grey) -> Grey:
+    """Brightness against its surroundings, in their own spread: shadows lose their edges."""
+    reach = max(grey.shape) / 50
+    light = np.log(grey.astype(np.float32) + 4)
+    light -= cv2.GaussianBlur(light, (0, 0), reach)
+    spread = np.sqrt(cv2.GaussianBlur(light * light, (0, 0), reach)) + 0.02
+    return np.clip(128 + 60 * light / spread, 0, 255).astype(np.uint8)
 
 
 def refined_by_gradients(grey: Grey, pixels: Float[Array, "n 2"], size: Size) -> Float[Array, "n 2"]:

@@ -115,7 +115,7 @@ def _measured(
     # The fit's windows reach REACH of an edge: let that be the clear disc, with a little to spare.
     edges = slope * sites.clear_m * (0.95 / REACH)
 
-    def shape(pixels: Float[Array, "n 2"], degree: int) -> GridShape:
+    def shape(pixels: Float[Array, "n 2"], degree: int) -> GridShape:  # noqa: ARG001
         patch = local_patches(sites.points[ids], pixels, sites.points[ids])
         return GridShape(edges, patch.curvature)
 
@@ -141,7 +141,7 @@ def _shows_saddle(
     if not len(ids):
         return np.zeros(0, dtype=bool)
     quadrants = pixels[:, None] + QUADRANT * sites.clear_m * QUADRANTS @ slope
-    inside = ((quadrants >= 0) & (quadrants <= np.array(grey.shape[::-1]) - 1)).all(axis=(1, 2))
+    inside = np.all((quadrants >= 0) & (quadrants <= np.array(grey.shape[::-1]) - 1), axis=(1, 2))
     u, v = np.moveaxis(np.where(inside[:, None, None], quadrants, 0).astype(np.float32), -1, 0)
     samples = cv2.remap(grey, u, v, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE).astype(float)
     flip = np.where(sites.dark_diagonal[ids], 1.0, -1.0)[:, None]

@@ -30,7 +30,7 @@ ITERATIONS = 25
 
 @dataclass(frozen=True)
 class FittedEllipses:
-    """Table of fits: `centres` (n, 2), their `sigma_px` (n,) per axis, `blur_px` (n,) and what may be trusted."""
+    """Table of fits: `centres` (n, 2), their `sigma_px` (n,) per axis, `blur_px` (n,), and which are good."""
 
     centres: Float[Array, "n 2"]
     sigma_px: Float[Array, "n"]
@@ -61,7 +61,7 @@ def _fit(
     W = vectors @ np.diag(values**-0.5) @ vectors.T
     inside = grey[tuple(np.clip(np.rint(centre[::-1]).astype(int), 0, np.array(grey.shape) - 1))]
     start = np.array([*centre, W[0, 0], W[0, 1], W[1, 1], 1.0, float(inside), 100.0, 0.0, 0.0])
-    ring = FIRST_RING_PX
+    ring, covariance = FIRST_RING_PX, np.zeros((UNKNOWNS, UNKNOWNS))
     for _ in range(2):
         window = _window(grey, start, ring, reach)
         if window is None:

@@ -5,6 +5,7 @@ straight lines nor a homography is assumed. Which lattice site is which is read 
 what has grown, which must be the board's own.
 """
 
+from collections import deque
 from itertools import product
 
 import numpy as np
@@ -23,10 +24,15 @@ MOST_POINTS = 600
 
 SEEDS = 16
 
+ALONG = ((1, 0), (-1, 0), (0, 1), (0, -1))
+DIAGONAL = ((1, 1), (-1, -1), (1, -1), (-1, 1))
+
 SIZE_TOLERANCE = 1.7
 """Largest ratio of the sizes of neighbours."""
 
-MAPS = [np.array([[a, b], [c, d]]) for a, b, c, d in product((-1, 0, 1), repeat=4) if abs(a * d - b * c) == 1]
+MAPS = [
+    np.array([[a, b], [c, d]]) for a, b, c, d in product(range(-2, 3), repeat=4) if abs(a * d - b * c) == 1
+]
 """Changes of lattice basis: the growth may have started along a diagonal."""
 
 
@@ -44,8 +50,8 @@ def match_lattice(
     largest = np.argsort(-sizes, kind="stable")[: max(MOST_POINTS, 2 * len(sites))]
     points, sizes = points[largest], sizes[largest]
     tried: set[int] = set()
-    for seed in _regular_first(points, sizes):
-        if int(seed) in tried:
+    for seed in _regular_first(points, sizes).tolist():
+        if seed in tried:
             continue
         for grown in _grown_from(seed, points, sizes):
             tried.update(grown.values())
@@ -73,7 +79,7 @@ def _grown_from(seed: int, points: Float[Array, "n 2"], sizes: Float[Array, "n"]
     """Lattices grown from a point along its nearest neighbours, the largest first."""
     away = points - points[seed]
     distance = np.linalg.norm(away, axis=1)
-    alike = _alike(sizes, sizes[seed])
+    alike = _alike(sizes, float(sizes[seed]))
     alike[seed] = False
     near = np.flatnonzero(alike)[np.argsort(distance[alike], kind="stable")[:8]]
     grown = []
@@ -99,27 +105,31 @@ def _grow(
     placed: dict[Site, int] = {(0, 0): seed}
     used = np.zeros(len(points), dtype=bool)
     used[seed] = True
-    steps: dict[Site, tuple[Array, Array]] = {(0, 0): (a, b)}
-    queue = [(0, 0)]
+    steps = {(0, 0): np.stack([a, b])}
+    queue, beyond = deque([((0, 0), ALONG)]), [(0, 0)]
     while queue:
-        site = queue.pop(0)
+        site, moves = queue.popleft()
         here = points[placed[site]]
-        for axis, sign in ((0, 1), (0, -1), (1, 1), (1, -1)):
-            unit = (sign, 0) if axis == 0 else (0, sign)
-            there = (site[0] + unit[0], site[1] + unit[1])
+        reach = STEP_TOLERANCE * np.linalg.norm(steps[site], axis=1).min()
+        for i, j in moves:
+            there = (site[0] + i, site[1] + j)
             if there in placed:
                 continue
-            step = sign * steps[site][axis]
-            distance = np.linalg.norm(points - (here + step), axis=1)
-            distance[used | ~_alike(sizes, sizes[placed[site]])] = np.inf
+            distance = np.linalg.norm(points - (here + np.array([i, j]) @ steps[site]), axis=1)
+            distance[used | ~_alike(sizes, float(sizes[placed[site]]))] = np.inf
             best = int(np.argmin(distance))
-            if distance[best] > STEP_TOLERANCE * np.linalg.norm(step):
+            if distance[best] > reach:
                 continue
             placed[there], used[best] = best, True
-            taken = list(steps[site])
-            taken[axis] = sign * (points[best] - here)
-            steps[there] = (taken[0], taken[1])
-            queue.append(there)
+            steps[there] = steps[site].copy()
+            if moves is ALONG:
+                steps[there][0 if i else 1] = (points[best] - here) * (i + j)
+            queue.append((there, ALONG))
+            beyond.append(there)
+        if not queue:
+            # Corners of a board may hang on by a diagonal alone.
+            queue.extend((site, DIAGONAL) for site in beyond)
+            beyond = []
     return placed
 
 

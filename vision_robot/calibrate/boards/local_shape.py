@@ -98,10 +98,12 @@ def _perspective(
         depth = np.concatenate([points, places]) @ H[2, :2] + H[2, 2]
         if depth.min() > STEEPEST * depth.max():
             return lambda at: (at @ H[:2, :2].T + H[:2, 2]) / (at @ H[2, :2] + H[2, 2])[:, None]
-    return lambda at: np.zeros_like(at)
+    return np.zeros_like
 
 
-def _fitted(away: Float[Array, "k 2"], pixels: Float[Array, "k 2"]) -> tuple[Float[Array, "t 2"], float] | None:
+def _fitted(
+    away: Float[Array, "k 2"], pixels: Float[Array, "k 2"]
+) -> tuple[Float[Array, "t 2"], float] | None:
     """Coefficients of the highest degree that the points determine well, and the doubt about the first.
 
     Near points weigh more.

@@ -24,8 +24,9 @@ def dictionary_named(name: str) -> cv2.aruco.Dictionary:
 
 def marker_bits(dictionary: cv2.aruco.Dictionary, marker: int) -> Bool[Array, "k k"]:
     """Which cells inside the border of one marker are white, upright as OpenCV draws it."""
-    code = dictionary.bytesList[marker : marker + 1]
-    return cv2.aruco.Dictionary_getBitsFromByteList(code, dictionary.markerSize).astype(bool)
+    cells = dictionary.markerSize
+    # One picture pixel a cell, border of one cell cut off.
+    return cv2.aruco.generateImageMarker(dictionary, marker, cells + 2)[1:-1, 1:-1] > 0
 
 
 def marker_shapes(

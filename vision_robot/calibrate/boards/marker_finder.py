@@ -132,7 +132,7 @@ def _detect(
     settings.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_CONTOUR
     corners, ids, _ = cv2.aruco.ArucoDetector(dictionary, settings).detectMarkers(picture)
     ratio = np.array([shape[1] / picture.shape[1], shape[0] / picture.shape[0]])
-    found = [] if ids is None else np.asarray(ids).ravel().tolist()
+    found = [] if ids is None else [int(marker) for marker in np.asarray(ids).ravel()]
     for marker, pixels in zip(found, corners, strict=True):
         if found.count(marker) == 1:
             yield marker, (np.asarray(pixels, dtype=float).reshape(4, 2) + 0.5) * ratio - 0.5

@@ -15,6 +15,7 @@ from vision_robot.calibrate.grid_shape import GridShape, grid_shape
 from vision_robot.calibrate.saddle.light import with_smooth_light
 from vision_robot.calibrate.saddle.optimum import Optimum, optimum
 from vision_robot.calibrate.saddle.problem import SaddleProblem
+from vision_robot.calibrate.saddle.sharpness import SharpnessPrior, sharpness_prior
 from vision_robot.calibrate.saddle.window import windows
 from vision_robot.types import Array, Bool, Float, UInt8
 
@@ -90,7 +91,8 @@ def fit_saddles(
     if good.any():
         sharpness = _normals(lie.edges) / np.median(first.blur[good])
         sharpness[good] = first.sharpness[good]
-    second = _fit(grey, near, lie, sharpness, final=True)
+    prior = sharpness_prior(first, good, near) if good.any() else None
+    second = _fit(grey, near, lie, sharpness, prior, final=True)
     offset, covariance = with_smooth_light(second, near)
     fitted = _stayed(second, near, pixels, lie) & np.isfinite(covariance).all(axis=(1, 2))
     contrast = np.abs(second.theta[:, 9])
@@ -106,7 +108,13 @@ def fit_saddles(
 
 
 def _fit(
-    grey: Grey, pixels: Float[Array, "n 2"], lie: GridShape, sharpness: Float[Array, "n 2 2"], *, final: bool
+    grey: Grey,
+    pixels: Float[Array, "n 2"],
+    lie: GridShape,
+    sharpness: Float[Array, "n 2 2"],
+    prior: SharpnessPrior | None = None,
+    *,
+    final: bool,
 ) -> Optimum:
     """One pass over all corners, a cache full at a time, windows of like size together."""
     cap_px = CAP_PX if final else START_CAP_PX
@@ -120,7 +128,8 @@ def _fit(
         window = windows(grey, pixels[some], part.edges, reach=REACH, cap_px=cap_px)
         problem = SaddleProblem.of(window, part, even_light=not final)
         start = problem.with_best_light(_geometry(sharpness[some]))
-        fits.append(optimum(problem, start, settled_px=SETTLED_PX if final else START_SETTLED_PX))
+        settled_px = SETTLED_PX if final else START_SETTLED_PX
+        fits.append(optimum(problem, start, settled_px=settled_px, prior=prior and prior.take(some)))
     return Optimum.joined(fits, order)
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from vision_robot.calibrate.saddle.optimum import Optimum
 from vision_robot.types import Array, Float
 
-__all__ = ["with_smooth_light"]
+__all__ = ["smooth_surface", "with_smooth_light"]
 
 SLOPES = np.array([7, 8, 10, 11])
 """Of the twelve parameters, the slopes of level and contrast."""
@@ -29,14 +29,15 @@ def with_smooth_light(
     scale = np.ones_like(fit.theta)
     scale[:, SLOPES] = fit.radius[:, None]
     outer = scale[:, :, None] * scale[:, None, :]
-    theta, normal, spread = fit.theta / scale, fit.normal * outer, fit.spread * outer
+    theta, normal = fit.theta / scale, fit.normal * outer
     n, p = theta.shape
     variance = fit.variance[:, None]
     diagonal = np.einsum("nii->ni", normal)
-    normal = normal + (1e-9 * diagonal + 1e-12)[:, :, None] * np.eye(p)
+    # The sums were made in single precision: lift them above what that may have made indefinite.
+    normal = normal + (1e-6 * diagonal + 1e-12)[:, :, None] * np.eye(p)
     seen = theta[:, SLOPES]
     noise = np.einsum("nii->ni", np.linalg.inv(normal))[:, SLOPES] * variance
-    expected = _smooth(pixels, seen, noise)
+    expected = smooth_surface(pixels, seen, noise)
     typical = np.median(noise, axis=0)
     scatter = np.median((seen - expected) ** 2 - MEDIAN_CHI2 * noise, axis=0) / MEDIAN_CHI2
     prior = np.zeros((n, p))
@@ -45,14 +46,14 @@ def with_smooth_light(
     held = np.linalg.inv(normal + firm)
     pull = prior[:, SLOPES] * (expected - seen)
     offset = theta[:, :2] + np.einsum("nij,nj->ni", held[:, :2, SLOPES], pull)
-    covariance = held @ (spread + firm) @ held * variance[:, :, None]
-    return offset, covariance[:, :2, :2]
+    # Weights at the rim make this an upper bound, by some percent.
+    return offset, held[:, :2, :2] * variance[:, :, None]
 
 
-def _smooth(
+def smooth_surface(
     pixels: Float[Array, "n 2"], values: Float[Array, "n k"], noise: Float[Array, "n k"]
 ) -> Float[Array, "n k"]:
-    """Values of a weighted quadratic surface; a plane or a constant where corners are few."""
+    """Values of a quadratic surface weighted by `noise`; a plane or a constant where corners are few."""
     n = len(pixels)
     centred = pixels - pixels.mean(axis=0)
     x, y = (centred / np.abs(centred).max().clip(1)).T

@@ -20,7 +20,11 @@ __all__ = ["blurred_saddle"]
 # Gauss-Legendre nodes and weights on [0, 1].
 NODES = ((0.1127016654, 5 / 18), (0.5, 8 / 18), (0.8872983346, 5 / 18))
 
-PIXEL_KURTOSIS = 1 / 1440
+SHARP = 1.4
+"""Above this sharpness [1/px], that is for blurs below 0.7 px, the pixel's square shape counts."""
+
+NARROWEST = 0.04
+"""Least width of a box and of the Gaussian beside it [px]: what is narrower leaves the sum as it is."""
 
 Field = Float[Array, "n m"]
 
@@ -41,7 +45,7 @@ def blurred_saddle(
     S, Sh, Sk = E1 * E2, D1 * E2, E1 * D2
     r = correlation.astype(h.dtype)[:, None]
     product, squares = h * k, h * h + k * k
-    near = np.flatnonzero((squares - 2 * np.abs(r * product) < 9 * (1 - r * r)) & (np.abs(r) > 1e-3))
+    near = np.flatnonzero((np.maximum(np.abs(h), np.abs(k)) < 2.9) & (np.abs(r) > 1e-3))
     hn, kn, product, squares = (np.take(field, near) for field in (h, k, product, squares))
     squares *= np.float32(0.5)
     angle = np.arcsin(correlation).astype(h.dtype)[near // h.shape[1]]
@@ -66,24 +70,51 @@ def blurred_saddle(
 def _edge(h: Field, normal: Float[Array, "n 2"]) -> tuple[Field, Field]:
     """Blurred step from -1 to 1 and its derivative, the square pixel's own shape included.
 
-    The error function from the exponential (Abramowitz and Stegun 7.1.26, error 2e-7). Where a pixel's
-    own extent is a good part of the blur, its fourth cumulant, ``-(a⁴ + b⁴)/120`` for the normal (a, b),
-    flattens the step: first term of the Edgeworth series.
+    Where the blur is wide, a Gaussian stands for all of it. Where the pixel's own extent is a good part
+    of it, that part is taken as what it is: an integral over a square.
     """
     density = np.exp(np.float32(-0.5) * h * h)
-    x = np.abs(h)
-    t = 1 / (1 + np.float32(0.3275911 / np.sqrt(2)) * x)
-    poly = np.float32(1.061405429) * t
+    step = np.copysign(1 - _tail(np.abs(h), density), h)
+    density *= np.float32(2 / np.sqrt(2 * np.pi))
+    sharpness = np.linalg.norm(normal, axis=1)
+    sharp = np.flatnonzero((sharpness > SHARP)[:, None] & (np.abs(h) < 4.5))
+    if len(sharp):
+        row = sharp // h.shape[1]
+        value, slope = _edge_over_pixels(np.take(h, sharp) / sharpness[row], normal[row], sharpness[row])
+        step.reshape(-1)[sharp] = value
+        density.reshape(-1)[sharp] = slope / sharpness[row]
+    return step, density
+
+
+def _edge_over_pixels(
+    distance: Float[Array, "k"], normal: Float[Array, "k 2"], sharpness: Float[Array, "k"]
+) -> tuple[Float[Array, "k"], Float[Array, "k"]]:
+    """Mean over a unit square of a Gaussian-blurred step, and its slope [1/px].
+
+    Across the edge, the square is two boxes of widths |normal_u| and |normal_v|; averaging over both takes
+    second differences of the step's second integral. The Gaussian is what the whole blur leaves for it.
+    """
+    along = np.abs(normal) / sharpness[:, None]
+    a, b = np.maximum(along, NARROWEST).T
+    sigma = np.sqrt(np.maximum(1 / sharpness**2 - 1 / 12, NARROWEST**2))
+    value, slope = np.zeros_like(distance), np.zeros_like(distance)
+    for sign_a, sign_b in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
+        d = distance + (sign_a * a + sign_b * b) / 2
+        x = d / sigma
+        density = np.exp(-0.5 * x * x)
+        step = np.copysign(1 - _tail(np.abs(x), density), x)
+        density *= sigma * np.sqrt(2 / np.pi)
+        value += sign_a * sign_b * ((d * d + sigma * sigma) * step + d * density) / 2
+        slope += sign_a * sign_b * (d * step + density)
+    return value / (a * b), slope / (a * b)
+
+
+def _tail(x: Array, density: Array) -> Array:
+    """``erfc(x / √2)`` for x ≥ 0, from ``exp(-x²/2)``: Abramowitz and Stegun 7.1.26, error 2e-7."""
+    one = x.dtype.type
+    t = 1 / (1 + one(0.3275911 / np.sqrt(2)) * x)
+    poly = one(1.061405429) * t
     for c in (-1.453152027, 1.421413741, -0.284496736, 0.254829592):
-        poly += np.float32(c)
+        poly += one(c)
         poly *= t
-    poly *= density
-    step = np.copysign(1 - poly, h)
-    density *= np.float32(1 / np.sqrt(2 * np.pi))
-    flat = np.minimum((normal**4).sum(axis=1) * PIXEL_KURTOSIS, 0.1).astype(h.dtype)
-    if flat.max() > 1e-3:
-        h2 = h * h
-        bend = flat[:, None] * density
-        step += bend * h * (h2 - 3)
-        return step, 2 * density - bend * (h2 * h2 - 6 * h2 + 3)
-    return step, 2 * density
+    return poly * density

@@ -1,6 +1,7 @@
 """Levenberg-Marquardt for many small problems at once."""
 
 from dataclasses import dataclass, fields
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -23,13 +24,12 @@ QUANTISATION = 1 / 12
 class Optimum:
     """Where the fits of n corners ended.
 
-    `theta` as in SaddleProblem; `normal` JᵀWJ and `spread` JᵀW²J; `variance` (n,) of the samples, from
-    the residuals, so that what the model does not explain counts as noise; `radius` (n,) as there.
+    `theta` as in SaddleProblem; `normal` JᵀWJ and the prior; `variance` (n,) of the samples, from the
+    residuals, so that what the model does not explain counts as noise; `radius` (n,) as in SaddleProblem.
     """
 
     theta: Float[Array, "n p"]
     normal: Float[Array, "n p p"]
-    spread: Float[Array, "n p p"]
     variance: Float[Array, "n"]
     radius: Float[Array, "n"]
 
@@ -50,31 +50,40 @@ class Optimum:
         return cls(*(np.concatenate([getattr(p, f.name) for p in parts])[back] for f in fields(cls)))
 
 
-def optimum(problem: SaddleProblem, theta: Float[Array, "n p"], *, settled_px: float) -> Optimum:
+@runtime_checkable
+class Prior(Protocol):
+    """What is known of the parameters beforehand, as least squares too."""
+
+    def take(self, some: Array) -> "Prior":
+        """The prior of some of the corners."""
+        ...
+
+    def terms(
+        self, theta: Float[Array, "n p"]
+    ) -> tuple[Float[Array, "n p p"], Float[Array, "n p"], Float[Array, "n"]]:
+        """What it adds to the normal matrix, to the gradient's negative and to the cost."""
+        ...
+
+
+def optimum(
+    problem: SaddleProblem, theta: Float[Array, "n p"], *, settled_px: float, prior: Prior | None = None
+) -> Optimum:
     """Least squares from `theta`; a corner is done when its last step was below `settled_px`.
 
     Corners that are done leave the batch, so the slow ones cost little.
     """
     n, p = theta.shape
     theta = theta.copy()
-    J, r = problem.linearised(theta)
-    N, g = _normal_equations(J, r)
-    cost = (r * r).sum(axis=1)
+    N, g, cost = _evaluated(problem, theta, prior)
     damping, busy, part = np.full(n, 1e-4), np.arange(n), problem
     for _ in range(MOST_STEPS):
         step = _damped_step(N[busy], g[busy], damping[busy])
         trial = _no_sharper_than_pixels(theta[busy] + step)
-        J_trial, r_trial = part.linearised(trial)
-        cost_trial = (r_trial * r_trial).sum(axis=1)
+        N_trial, g_trial, cost_trial = _evaluated(part, trial, prior)
         better = cost_trial <= cost[busy] * (1 + 1e-6)
         a = busy[better]
-        if len(a) == n:
-            J, r = J_trial, r_trial
-            N, g = _normal_equations(J, r)
-        else:
-            J[a], r[a] = J_trial[better], r_trial[better]
-            N[a], g[a] = _normal_equations(J[a], r[a])
         theta[a], cost[a] = trial[better], cost_trial[better]
+        N[a], g[a] = N_trial[better], g_trial[better]
         damping[busy] *= np.where(better, 0.1, 10.0)
         settled = np.abs(step[:, :2]).max(axis=1) < settled_px
         turned = np.abs(step[:, 2:GEOMETRY]).max(axis=1)
@@ -84,17 +93,23 @@ def optimum(problem: SaddleProblem, theta: Float[Array, "n p"], *, settled_px: f
             break
         if not going.all():
             busy, part = busy[going], part.take(going)
-    weight = problem.weight
-    spread = np.matmul(J * weight[:, None], J.transpose(0, 2, 1)).astype(float)
-    freedom = np.maximum(weight.sum(axis=1) - p, 3)
-    return Optimum(theta, N, spread, cost / freedom + QUANTISATION, problem.radius)
+            prior = prior and prior.take(going)
+    freedom = np.maximum(problem.weight.sum(axis=1) - p, 3)
+    return Optimum(theta, N, cost / freedom + QUANTISATION, problem.radius)
 
 
-def _normal_equations(
-    J: Float[Array, "n p m"], r: Float[Array, "n m"]
-) -> tuple[Float[Array, "n p p"], Float[Array, "n p"]]:
+def _evaluated(
+    problem: SaddleProblem, theta: Float[Array, "n p"], prior: Prior | None
+) -> tuple[Float[Array, "n p p"], Float[Array, "n p"], Float[Array, "n"]]:
+    """Normal matrix, negative gradient and cost."""
+    J, r = problem.linearised(theta)
     N = np.matmul(J, J.transpose(0, 2, 1)).astype(float)
-    return N, np.matmul(J, r[:, :, None])[:, :, 0].astype(float)
+    g = np.matmul(J, r[:, :, None])[:, :, 0].astype(float)
+    cost = (r * r).sum(axis=1).astype(float)
+    if prior is None:
+        return N, g, cost
+    more_N, more_g, more_cost = prior.terms(theta)
+    return N + more_N, g + more_g, cost + more_cost
 
 
 def _damped_step(
