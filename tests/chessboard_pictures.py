@@ -85,8 +85,8 @@ def smooth_pattern(pose: SE3, board: Chessboard, camera: Camera) -> np.ndarray:
     R, t = pose.rotation, pose.translation
     depth = (R[:, 2] @ t) / (R[0, 2] * x + R[1, 2] * y + R[2, 2])
     ray = (x * depth - t[0], y * depth - t[1], depth - t[2])
-    a, b = (np.tensordot(R[:, axis], np.stack(ray), 1) / board.square_m for axis in range(2))
-    steps = [np.hypot(*np.gradient(c)) for c in (a, b)]
+    a, b = (np.asarray(np.tensordot(R[:, axis], np.stack(ray), 1)) / board.square_m for axis in range(2))
+    steps = [np.linalg.norm(np.gradient(c), axis=0) for c in (a, b)]
 
     def edge(c: np.ndarray, step: np.ndarray) -> np.ndarray:
         """+1 and -1 in turn between whole numbers, straight over a sample's extent at each."""

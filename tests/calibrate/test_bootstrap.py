@@ -16,8 +16,8 @@ SIZE = (1280, 960)
 
 def test_under_the_right_model_it_agrees_with_the_covariance_and_holds_the_truth():
     held, ratios, chances = [], [], []
-    for seed in range(25):
-        views = make_views(CAMERAS["brown5"], 20, seed=seed)
+    for seed in range(12):
+        views = make_views(CAMERAS["brown5"], 16, seed=seed)
         result = calibrate(views.corners, views.board, SIZE)
         found = bootstrap(result, views.board)
         truth, free = views.camera.parameters[result.free], result.free
@@ -25,10 +25,10 @@ def test_under_the_right_model_it_agrees_with_the_covariance_and_holds_the_truth
         held.append((low < truth) & (truth < high))
         ratios.append(found.typical_ratio)
         chances.append(found.chance)
-    assert np.mean(ratios) == pytest.approx(1, abs=0.06)
-    # 25 x 9 parameters that hang together in threes: 95 % to 3 %.
-    assert np.mean(held) == pytest.approx(0.95, abs=0.06)
-    assert np.mean(np.array(chances) < 0.01) <= 0.08
+    assert np.mean(ratios) == pytest.approx(1, abs=0.1)
+    # 12 x 9 parameters that hang together in threes: 95 % to 4 %.
+    assert np.mean(held) == pytest.approx(0.95, abs=0.08)
+    assert np.mean(np.array(chances) < 0.01) <= 0.1
     assert 0.2 < np.mean(chances) < 0.7
 
 

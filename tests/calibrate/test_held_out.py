@@ -47,8 +47,8 @@ def test_a_wrong_camera_is_worse():
 
 
 def test_folds_are_what_complete_calibrations_of_the_others_find():
-    views = make_views(CAMERAS["brown5"], 8, seed=4)
-    quick = cross_validate(views.corners, views.board, SIZE, folds=8)
+    views = make_views(CAMERAS["brown5"], 6, seed=4)
+    quick = cross_validate(views.corners, views.board, SIZE, folds=6)
     for i, view in enumerate(views.corners):
         others = calibrate([*views.corners[:i], *views.corners[i + 1 :]], views.board, SIZE)
         slow = held_out(others.camera, [view], views.board)
@@ -95,7 +95,7 @@ def test_blurred_corners_weigh_less():
         told.append(Corners(view.image, view.ids, pixels, np.where(blurred, 1.0, 0.1)))
         untold.append(Corners(view.image, view.ids, pixels))
     assert held_out(views.camera, told, views.board).rms_px == pytest.approx(0.71 * np.sqrt(2), rel=0.1)
-    sigma = [calibrate(c, views.board, SIZE).sigma["fx"] for c in (told, untold)]
+    sigma = [calibrate(c, views.board, SIZE, Settings(robust=False)).sigma["fx"] for c in (told, untold)]
     assert sigma[0] < 0.5 * sigma[1]
 
 

@@ -43,7 +43,7 @@ TINY_PX = 1e-9
 """Rounding: two cameras that leave no more than that are alike."""
 
 SETTLED = 0.1
-"""A fold's camera may be so many standard deviations from its minimum: a hundredth of one parameter's price."""
+"""Standard deviations that a fold's camera may lie off its minimum: a hundredth of one parameter's price."""
 
 
 @dataclass(frozen=True)

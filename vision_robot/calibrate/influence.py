@@ -20,7 +20,7 @@ from vision_robot.types import Array, Float
 __all__ = ["Influence", "influence"]
 
 DECISIVE = 1.0
-"""Shift over the picture, in standard deviations of the whole calibration, from which one view decides too much."""
+"""Shift over the picture, in standard deviations of all views' answer, from which one decides too much."""
 
 SURPRISING = 4.0
 """Shift, over what a right model predicts, from which a view contradicts the others."""

@@ -3,8 +3,8 @@
 More parameters always fit better, so the rms tells nothing. Held-out views do: a parameter
 that follows noise makes them worse. The best candidate is best by chance as well, so that
 the simplest one is taken that is worse by no more than one standard error of the paired
-difference over views, or little more (the one-standard-error rule of Breiman et al. 1984,
-section 3.4.3).
+difference over views (the one-standard-error rule of Breiman et al. 1984, section 3.4.3), or
+by less than its missing parameters must earn.
 """
 
 from collections.abc import Sequence
@@ -30,12 +30,12 @@ COUNTED = {"fisheye": 6}
 FIRST_DEGREE = 2
 """Lenses meet over a board that may bend a little, lest a bent board be taken for a lens."""
 
-WITHIN = 1.25
-"""Standard errors. Folds share most of their views, so what is seen between views understates the error
-(Nadeau & Bengio 2003): with one, a needless lens slipped in with every twentieth set, with 1.5 a lens was missed."""
+PRICE = 1.5
+"""What a further parameter must lower the held-out rms by, as a part of it, times the measured numbers:
+three times what it raises it by if it is needless. Less than that is chance, however steady over views."""
 
 AHEAD = 2
-"""Degrees of the warp that are tried past the one chosen so far: one that adds nothing may hide one that does."""
+"""Degrees of the warp tried past the one chosen so far: one that adds nothing may hide one that does."""
 
 HOPELESS = 1.5
 """A lens whose held-out error there is so many times the best one's is not tried further."""
@@ -105,8 +105,8 @@ def select(
     candidates = every_candidate() if candidates is None else tuple(candidates)
     if not candidates:
         raise BadParameter("candidates", 0, "one or more settings")
-    trials = _Trials(sorted(candidates, key=lambda settings: _simplicity(settings, board_points)))
-    settings = trials.settings
+    settings = sorted(candidates, key=lambda settings: _simplicity(settings, board_points))
+    trials = _Trials(settings, board_points)
     first = _one_for_each_lens(settings)
     corners, fits = _without_outliers(corners, board_points, size, [settings[i] for i in first])
 
@@ -116,9 +116,10 @@ def select(
                 continue
             try:
                 result = fits.get(settings[i].model) if i in first else None
-                if result is None:
-                    result = calibrate(corners, board_points, size, replace(settings[i], robust=False))
-                trials.add(i, result, hold_back(result, board_points, folds=folds, seed=seed))
+                with np.errstate(all="ignore"):  # a hopeless candidate may overflow on its way
+                    if result is None:
+                        result = calibrate(corners, board_points, size, replace(settings[i], robust=False))
+                    trials.add(i, result, hold_back(result, board_points, folds=folds, seed=seed))
             except (DegenerateViews, NoConvergence) as error:
                 trials.outcome[i] = str(error)
 
@@ -133,7 +134,7 @@ def select(
         attempt(
             [i for i, one in enumerate(settings) if one.warp == degree and not trials.hopeless(one.model)]
         )
-    return trials.selection(board_points)
+    return trials.selection()
 
 
 @dataclass(frozen=True)
@@ -141,6 +142,7 @@ class _Trials:
     """Candidates from the simplest on, and what came of those tried: errors, or a reason."""
 
     settings: Sequence[Settings]
+    board_points: Float[Array, "m 3"]
     outcome: dict[int, HeldOut | str] = field(default_factory=dict)
     rms_px: dict[int, float] = field(default_factory=dict)
 
@@ -169,8 +171,14 @@ class _Trials:
     def near(self) -> list[int]:
         """The best and all about as good, the simplest first."""
         done, best = self.done(), self.best()
-        worse = {i: error.worse_by(done[best]) for i, error in done.items()}
-        return sorted(i for i, (mean, scatter) in worse.items() if mean <= WITHIN * scatter or i == best)
+        price = PRICE / done[best].freedom.sum()
+        counted = [_simplicity(settings, self.board_points)[0] for settings in self.settings]
+        near = []
+        for i, error in done.items():
+            mean, scatter = error.worse_by(done[best])
+            if i == best or mean <= max(scatter, price * (counted[best] - counted[i])):
+                near.append(i)
+        return sorted(near)
 
     def choice(self) -> int:
         """The simplest of those."""
@@ -183,7 +191,7 @@ class _Trials:
         mine = [error.rms_px for i, error in done.items() if self.settings[i].model == lens]
         return min(mine, default=np.inf) > HOPELESS * least
 
-    def selection(self, board_points: Array) -> Selection:
+    def selection(self) -> Selection:
         """The table of those tried, and the choice with its reasons."""
         done, best, near = self.done(), self.best(), self.near()
         tried = sorted(self.outcome)
@@ -204,7 +212,7 @@ class _Trials:
             else:
                 why.append(f"{exceeds[row] / scatter[row]:.1f} standard errors behind the best")
         settings = tuple(self.settings[i] for i in tried)
-        parameters = tuple(_parameters(one, board_points) for one in settings)
+        parameters = tuple(_parameters(one, self.board_points) for one in settings)
         chosen, best = tried.index(near[0]), tried.index(best)
         return Selection(settings, parameters, rms, out, exceeds, scatter, tuple(why), chosen, best)
 
@@ -239,7 +247,8 @@ def _without_outliers(
     fits, failure = [], None
     for settings in candidates:
         try:
-            fits.append(calibrate(corners, board_points, size, replace(settings, robust=True)))
+            with np.errstate(all="ignore"):
+                fits.append(calibrate(corners, board_points, size, replace(settings, robust=True)))
         except (DegenerateViews, NoConvergence) as error:
             failure = error
     if not fits:

@@ -43,7 +43,7 @@ def test_drawing_has_black_first_square_and_a_quiet_margin():
 @pytest.mark.parametrize("turns", [0, 1, 2, 3])
 def test_turned_pictures_give_ids_that_follow_the_board(size, turns):
     """Where one count is even and one odd, the colours fix the frame in every quarter turn."""
-    board = Chessboard(*size, 0.025)
+    board = Chessboard(size[0], size[1], 0.025)
     page, corners = drawn(board)
     for _ in range(turns):
         corners = np.stack([corners[:, 1], page.shape[1] - 1 - corners[:, 0]], axis=1)
@@ -59,7 +59,7 @@ def test_turned_pictures_give_ids_that_follow_the_board(size, turns):
 @pytest.mark.parametrize("turns", [0, 1, 2, 3])
 def test_ambiguous_boards_lie_as_upright_as_they_can(size, turns):
     """x points as far to the right as colours and right-handedness allow, and black is first."""
-    board = Chessboard(*size, 0.025)
+    board = Chessboard(size[0], size[1], 0.025)
     page, _ = drawn(board)
     page = np.ascontiguousarray(np.rot90(page, turns))
     found = board.detect(page)

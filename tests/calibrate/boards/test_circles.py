@@ -78,7 +78,7 @@ def test_other_boards_are_not_taken_for_it():
     assert Circles(9, 7, 0.03, 0.015).detect(image) is None
     for other in (Chessboard(9, 6, 0.03), AsymmetricCircles(9, 6, 0.02, 0.012)):
         assert BOARD.detect(photo(other, CAMERA, facing(other, CAMERA))) is None
-    assert BOARD.detect(np.random.default_rng(0).integers(0, 256, (480, 640), dtype=np.uint8)) is None
+    assert BOARD.detect(np.random.default_rng(0).integers(0, 256, (240, 320), dtype=np.uint8)) is None
     assert BOARD.detect(np.full((480, 640), 128, np.uint8)) is None
 
 

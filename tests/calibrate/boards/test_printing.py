@@ -22,11 +22,11 @@ SVG = "{http://www.w3.org/2000/svg}"
 def pdf_polygons_mm(path) -> list[np.ndarray]:
     """Vertices of all filled paths, y down from the top of the page [mm]."""
     page = PdfReader(path).pages[0]
+    content = page.get_contents()
+    assert content is not None
     height = float(page.mediabox.height)
     shapes, current = [], []
-    for x, y, operator in re.findall(
-        r"([-\d.]+) ([-\d.]+) ([ml])\b", page.get_contents().get_data().decode()
-    ):
+    for x, y, operator in re.findall(r"([-\d.]+) ([-\d.]+) ([ml])\b", content.get_data().decode()):
         if operator == "m":
             current = []
             shapes.append(current)
@@ -79,7 +79,7 @@ def test_svg_is_to_scale(tmp_path):
     root = ET.parse(tmp_path / "board.svg").getroot()
     assert (root.get("width"), root.get("height"), root.get("viewBox")) == ("300mm", "225mm", "0 0 300 225")
     shapes = [
-        np.array([[float(v) for v in point.split(",")] for point in polygon.get("points").split()])
+        np.array([[float(v) for v in point.split(",")] for point in polygon.get("points", "").split()])
         for polygon in root.iter(f"{SVG}polygon")
     ]
     check_squares(squares_of(shapes), 25, 25, 1e-5)
@@ -96,6 +96,7 @@ def test_png_is_to_scale(tmp_path, dpi):
     assert (across, unit) == (down, 1)
     assert across == pytest.approx(dpi / 0.0254, abs=0.5)
     image = cv2.imread(str(tmp_path / "board.png"), cv2.IMREAD_UNCHANGED)
+    assert image is not None
     assert image.shape == (np.ceil(0.225 * across), np.ceil(0.3 * across))
     found = BOARD.detect(image)
     assert found is not None
@@ -135,7 +136,7 @@ def test_page_too_small_names_one_that_fits():
 def test_ink_is_in_the_middle_of_every_page(page):
     """Upright or on its side, whichever way the target lies."""
     for size in ((5, 4), (4, 5)):
-        drawing, name = on_page(Chessboard(*size, 0.02).drawing(), page)
+        drawing, name = on_page(Chessboard(size[0], size[1], 0.02).drawing(), page)
         left, top, right, bottom = drawing.ink_bounds
         assert name == page
         assert (left, top) == pytest.approx((drawing.width - right, drawing.height - bottom))
@@ -146,7 +147,7 @@ def test_ink_is_in_the_middle_of_every_page(page):
 @pytest.mark.parametrize("size", [(3, 3), (9, 6), (30, 20)])
 def test_legend_stays_in_the_margin(size, square_m):
     """Whatever the size, the print below the pattern touches neither the squares nor the page's edge."""
-    board = Chessboard(*size, square_m)
+    board = Chessboard(size[0], size[1], square_m)
     drawing = board.drawing()
     below = board.size_m[1] - square_m
     low, high = below + 0.2 * square_m, below + 0.75 * square_m

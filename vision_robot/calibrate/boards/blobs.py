@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from vision_robot.types import Array, Float, UInt8
+from vision_robot.types import Array, Float, Int, UInt8
 
 __all__ = ["EllipseBlobs", "dark_blobs"]
 
@@ -19,6 +19,10 @@ FEWEST_OUTLINE_PIXELS = 8
 SMALLEST_PX = 1.0
 """Least half axis of an outline through pixel centres; smaller discs are found when magnified."""
 
+LARGEST = 0.05
+"""Largest blob as a share of the picture."""
+
+AREA_TOLERANCE = 0.1
 SLIMMEST = 0.12
 """Least ratio of the axes of an ellipse: a disc tilted by 83 degrees."""
 
@@ -82,33 +86,30 @@ def _dark_masks(picture: Grey) -> Iterator[Grey]:
 def _ellipses(mask: Grey) -> EllipseBlobs:
     """Connected regions whose outline is an ellipse's."""
     outlines, _ = cv2.findContours(mask, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)
-    largest = 0.05 * mask.size
-    centres, spreads = [], []
-    for outline in outlines:
-        if len(outline) < FEWEST_OUTLINE_PIXELS:
-            continue
-        moments = cv2.moments(outline)
-        area = moments["m00"]
-        if not 4 <= area <= largest:
-            continue
-        # An ellipse's second moments are a quarter of its squared half axes.
-        spread = 4 * np.array([[moments["mu20"], moments["mu11"]], [moments["mu11"], moments["mu02"]]]) / area
-        low, high = np.linalg.eigvalsh(spread)
-        if low < SLIMMEST**2 * high or low <= SMALLEST_PX**2:
-            continue
-        centre = np.array([moments["m10"], moments["m01"]]) / area
-        if not _is_ellipse(outline.reshape(-1, 2) - centre, spread, area):
-            continue
-        # Outlines run through the centres of the outermost pixels, half a pixel inside the edge.
-        centres.append(centre)
-        spreads.append(spread * (1 + 0.5 / np.sqrt(low)) * (1 + 0.5 / np.sqrt(high)))
-    return EllipseBlobs(np.array(centres).reshape(-1, 2), np.array(spreads).reshape(-1, 2, 2))
+    outlines = [outline for outline in outlines if len(outline) >= FEWEST_OUTLINE_PIXELS]
+    table = np.array([_moments(outline) for outline in outlines]).reshape(-1, 6)
+    table[:, 0] = np.where((table[:, 0] >= 4) & (table[:, 0] <= LARGEST * mask.size), table[:, 0], np.nan)
+    area, centres, (xx, xy, yy) = table[:, 0], table[:, 1:3] / table[:, :1], 4 * table[:, 3:].T / table[:, 0]
+    # Squared half axes: an ellipse's second moments are a quarter of them.
+    mean, half = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
+    low, high = mean - half, mean + half
+    with np.errstate(invalid="ignore"):
+        good = (low > SMALLEST_PX**2) & (low > SLIMMEST**2 * high)
+        good &= np.abs(area - np.pi * np.sqrt(np.maximum(low * high, 0))) < AREA_TOLERANCE * area
+    spreads = np.stack([xx, xy, xy, yy], axis=1).reshape(-1, 2, 2)
+    for k in np.flatnonzero(good):
+        good[k] = _is_ellipse(outlines[k].reshape(-1, 2) - centres[k], spreads[k], float(np.sqrt(low[k])))
+    # Outlines run through the centres of the outermost pixels, half a pixel inside the edge.
+    grown = (1 + 0.5 / np.sqrt(low[good])) * (1 + 0.5 / np.sqrt(high[good]))
+    return EllipseBlobs(centres[good], spreads[good] * grown[:, None, None])
 
 
-def _is_ellipse(outline: Float[Array, "n 2"], spread: Float[Array, "2 2"], area: float) -> bool:
-    """Whether the outline keeps to the ellipse of its own moments to 12 %, or about a pixel."""
-    if abs(area / (np.pi * np.sqrt(np.linalg.det(spread))) - 1) > 0.1:
-        return False
+def _moments(outline: Int[Array, "n 1 2"]) -> tuple[float, ...]:
+    m = cv2.moments(outline)
+    return m["m00"], m["m10"], m["m01"], m["mu20"], m["mu11"], m["mu02"]
+
+
+def _is_ellipse(outline: Float[Array, "n 2"], spread: Float[Array, "2 2"], half_axis: float) -> bool:
+    """Whether the outline keeps to the ellipse of its own moments to 6 % or a third of a pixel, rms."""
     radius = np.sqrt(np.einsum("ni,ij,nj->n", outline, np.linalg.inv(spread), outline))
-    tolerance = 0.12 + 0.6 / np.sqrt(np.linalg.eigvalsh(spread)[0])
-    return bool(np.sqrt(np.mean((radius - 1) ** 2)) < 0.5 * tolerance)
+    return bool(np.sqrt(np.mean((radius - 1) ** 2)) < 0.06 + 0.3 / half_axis)

@@ -5,6 +5,7 @@ detector; a find counts only if the colours around its corners are those of a wh
 """
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -60,60 +61,78 @@ def find_grid(grey: Grey, size: Size) -> Grid | None:
 
     A whole board of another size ends the search: what is asked for is not there.
     """
-    for picture, scale, detect in _quick(grey):
-        if (grid := _found(grey, size, _at_scale(picture, size, scale, detect))) is not None:
+    for attempt in _quick(grey):
+        if (grid := attempt.found(grey, size)) is not None:
             return grid
     any_grid = find_any_grid(grey)
     if any_grid is not None:
         right = sorted(any_grid.shape[:2]) == sorted(size)
-        return _found(grey, size, _refitted(any_grid, size)) if right else None
-    for picture, scale, detect in _patient(grey):
-        if (grid := _found(grey, size, _at_scale(picture, size, scale, detect))) is not None:
+        return _whole(grey, size, _refitted(any_grid, size)) if right else None
+    for attempt in _patient(grey):
+        if (grid := attempt.found(grey, size)) is not None:
             return grid
     return None
 
 
 def find_any_grid(grey: Grey) -> Grid | None:
     """Corners of a whole chessboard of any size, or None: grown from any 3 × 3 corners."""
-    scale = min(1.0, LARGE_PX / max(grey.shape))
-    small = _resized(grey, (scale, scale))
-    for flags in (SECTOR, SECTOR_PATIENT):
-        found, pixels, meta = cv2.findChessboardCornersSBWithMeta(small, (3, 3), flags | cv2.CALIB_CB_LARGER)
+    small = _resized(grey, _shrinking(grey, LARGE_PX))
+    for more in (0, cv2.CALIB_CB_EXHAUSTIVE):
+        flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_LARGER | more
+        found, pixels, meta = cv2.findChessboardCornersSBWithMeta(small, (3, 3), flags)
         if found:
             grid = np.asarray(pixels, dtype=float).reshape(*meta.shape, 2)
-            if is_whole_board(small, grid):
+            # The lit part of a board in hard shadow looks like a smaller board, but not when levelled.
+            if is_whole_board(small, grid) and is_whole_board(_levelled(small), grid):
                 return _original(grid.reshape(-1, 2), small, grey).reshape(grid.shape)
     return None
 
 
-Attempt = tuple[Grey, tuple[float, float], "Detector"]
+@dataclass(frozen=True)
+class _Attempt:
+    """A detector, the scales (across, down) at which it looks, and what is done to the picture before."""
+
+    detect: "Detector"
+    scale: tuple[float, float]
+    altered: Callable[[Grey], Grey] | None = None
+
+    def found(self, grey: Grey, size: Size) -> Grid | None:
+        """The whole board in the picture, or None."""
+        small = _resized(grey, self.scale)
+        pixels = self.detect(self.altered(small) if self.altered else small, size)
+        if pixels is None:
+            return None
+        if max(self.scale) < 1:
+            # A small picture's errors grow with the picture: make them small before.
+            columns, rows = size
+            pixels = fit_grid(small, pixels.reshape(rows, columns, 2)).pixels
+        return _whole(grey, size, _original(pixels, small, grey))
 
 
-def _quick(grey: Grey) -> Iterator[Attempt]:
+def _quick(grey: Grey) -> Iterator[_Attempt]:
     """What finds nearly all boards."""
-    small = min(1.0, SMALL_PX / max(grey.shape))
-    yield grey, (small, small), _quads(QUICK)
-    yield grey, (small, small), _sectors(SECTOR)
+    small = _shrinking(grey, SMALL_PX)
+    yield _Attempt(_quads(QUICK), small)
+    yield _Attempt(_sectors(SECTOR), small)
 
 
-def _patient(grey: Grey) -> Iterator[Attempt]:
-    """What finds boards that are faint, noisy, blurred, small, unevenly lit or very oblique."""
+def _patient(grey: Grey) -> Iterator[_Attempt]:
+    """What finds boards that are faint, noisy, blurred, small or very oblique."""
     long_side = max(grey.shape)
-    large, small = min(1.0, LARGE_PX / long_side), min(1.0, SMALL_PX / long_side)
-    yield grey, (large, large), _sectors(SECTOR_PATIENT)
-    yield grey, (large, large), _quads(PATIENT)
-    stretched = _stretched(grey)
-    yield cv2.medianBlur(stretched, 5), (small, small), _quads(FILTERED)
-    yield _levelled(grey), (small, small), _sectors(SECTOR_PATIENT)
+    large, small = _shrinking(grey, LARGE_PX), _shrinking(grey, SMALL_PX)
+    yield _Attempt(_sectors(SECTOR_PATIENT), small, _levelled)
+    yield _Attempt(_sectors(SECTOR_PATIENT), large)
+    yield _Attempt(_quads(PATIENT), large)
+    yield _Attempt(_quads(FILTERED), small, lambda picture: cv2.medianBlur(_stretched(picture), 5))
     # Magnified along one axis, foreshortened squares become squares again.
-    for across, down in ((2.0, 2.0), (1.0, 2.0), (2.0, 1.0), (1.0, 3.0), (3.0, 1.0)):
-        if max(across, down) * long_side <= LARGE_PX:
-            yield stretched, (across, down), _quads(PATIENT)
+    for scale in ((2.0, 2.0), (1.0, 2.0), (2.0, 1.0), (1.0, 3.0), (3.0, 1.0)):
+        if max(scale) * long_side <= LARGE_PX:
+            yield _Attempt(_quads(PATIENT), scale, _stretched)
 
 
-def _found(grey: Grey, size: Size, pixels: Float[Array, "n 2"] | None) -> Grid | None:
+def _whole(grey: Grey, size: Size, pixels: Float[Array, "n 2"]) -> Grid | None:
     columns, rows = size
-    if pixels is None or len(pixels) != columns * rows:
+    if len(pixels) != columns * rows:
         return None
     grid = pixels.reshape(rows, columns, 2)
     return grid if is_whole_board(grey, grid) else None
@@ -140,18 +159,10 @@ def _sectors(flags: int) -> Detector:
     return detect
 
 
-def _at_scale(
-    grey: Grey, size: Size, scale: tuple[float, float], detect: Detector
-) -> Float[Array, "n 2"] | None:
-    small = _resized(grey, scale)
-    pixels = detect(small, size)
-    if pixels is None:
-        return None
-    if max(scale) < 1:
-        # A small picture's errors grow with the picture: make them small before.
-        columns, rows = size
-        pixels = fit_grid(small, pixels.reshape(rows, columns, 2)).pixels
-    return _original(pixels, small, grey)
+def _shrinking(grey: Grey, long_side_px: int) -> tuple[float, float]:
+    """The scale that brings the longer side down to so many pixels; never above one."""
+    scale = min(1.0, long_side_px / max(grey.shape))
+    return scale, scale
 
 
 def _resized(grey: Grey, scale: tuple[float, float]) -> UInt8[Array, "_ _"]:
