@@ -99,9 +99,7 @@ def main() -> None:
     asked = parser.parse_args()
     views = detected()
     print(f"{len(views)} views, {sum(map(len, views))} corners by the chessboard detector\n")
-    print(
-        f"{'model':8} {'warp':>4} {'rms px':>8} {'held-out px':>12}   {'fx':>8} {'cx':>8} {'cy':>8} {'corners out':>12}"
-    )
+    print("model    warp   rms px  held-out px         fx       cx       cy  corners out")
     for model in MODELS:
         for degree in DEGREES:
             try:

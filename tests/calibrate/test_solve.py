@@ -66,6 +66,16 @@ def test_parallel_views_are_refused_by_name(tilt):
     assert {"fx", "fy"} <= set(caught.value.undetermined)
 
 
+def test_coefficients_of_a_lens_that_is_too_rich_get_no_sigma():
+    """brown8 on views that brown5 explains: its fractions cancel, and no sigma of them is honest."""
+    views = make_views(CAMERAS["brown5"], 15, seed=8)
+    result = calibrate(views.corners, views.board, SIZE, Settings(model="brown8"))
+    assert {"k1", "k4"} <= set(result.covariance.undetermined)
+    assert not {"k1", "k4"} & set(result.sigma)
+    assert {"fx", "fy", "cx", "cy"} <= set(result.sigma)
+    assert solve(views).covariance.undetermined == ()
+
+
 def test_too_few_views_say_how_many():
     views = make_views(CAMERAS["brown5"], 2)
     with pytest.raises(TooFewViews, match="2 usable view"):

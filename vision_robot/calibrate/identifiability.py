@@ -1,10 +1,13 @@
 """What the views can tell, asked before any number is given."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from vision_robot.calibrate.covariance import Covariance, covariance
+from vision_robot.calibrate.covariance import NULL, Covariance, covariance
+from vision_robot.calibrate.normal_equations import normal_equations
 from vision_robot.calibrate.problem import Problem
-from vision_robot.calibrate.refine import Refinement, refine
+from vision_robot.calibrate.refine import Refinement, refine, schur_complement
 from vision_robot.calibrate.state import State
 from vision_robot.errors import DegenerateViews, NoConvergence
 from vision_robot.geometry import SE3
@@ -12,6 +15,9 @@ from vision_robot.geometry.camera import AFFINE_NAMES
 from vision_robot.types import Array
 
 __all__ = ["identified", "tilt_spread"]
+
+PARABOLIC = 0.4
+"""Largest |log| of found over foretold rise of the cost: brown5 and fisheye stay below 0.1, bent valleys above."""
 
 VAGUE = 0.1
 """A standard deviation of more than this part of the parameter's scale is no knowledge."""
@@ -37,7 +43,38 @@ def identified(end: Refinement, problem: Problem) -> Covariance:
     nearly_parallel = tilt_spread(state.cam_from_board) < np.radians(15)
     if nearly_parallel and _focal_is_loose(end, problem, variance):
         raise DegenerateViews(("fx", "fy"), "the views are nearly parallel to each other")
-    return known
+    bent = _bent(end, problem, known, variance)
+    return replace(known, undetermined=tuple(dict.fromkeys((*known.undetermined, *bent))))
+
+
+def _bent(end: Refinement, problem: Problem, known: Covariance, variance: float) -> tuple[str, ...]:
+    """Lens coefficients whose sigma means nothing, since the valley they lie in is not a parabola.
+
+    The numerator and denominator of a rational lens can cancel along a curved valley: a
+    linear sigma then holds the truth in 70 of 100 cases instead of 95. Two standard
+    deviations are stepped either way along the direction that is known least, poses
+    following; the cost must rise as the parabola foretells.
+    """
+    equations = end.equations
+    S = schur_complement(equations)
+    scale = 1 / np.sqrt(np.maximum(np.diag(equations.shared), 1e-300))
+    values, vectors = np.linalg.eigh(S * scale[:, None] * scale)
+    if values[0] < NULL:
+        return ()
+    sigma = scale * vectors[:, 0] * np.sqrt(variance / values[0])
+    gain = np.linalg.solve(equations.pose, equations.border.transpose(0, 2, 1))
+    for step in (2 * sigma, -2 * sigma):
+        moved = end.state.moved(problem.free, step, -gain @ step)
+        rise = normal_equations(moved, problem).cost - equations.cost if moved else np.inf
+        if not abs(np.log(max(rise, 1e-300) / (2 * variance))) <= PARABOLIC:
+            break
+    else:
+        return ()
+    index = np.flatnonzero(problem.free)
+    own = np.sqrt(np.diag(known.shared))[index]
+    names = end.state.shared_names
+    tied = index[np.abs(sigma) > 0.5 * own]
+    return tuple(names[int(i)] for i in tied if 5 <= i < known.intrinsic_count)
 
 
 def tilt_spread(cam_from_board: SE3) -> float:
