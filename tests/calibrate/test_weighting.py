@@ -31,3 +31,11 @@ def test_equal_sigmas_only_tell_the_scale():
     found = trust(lengths(np.full(4000, 0.3), 3), np.full(4000, 0.1))
     assert found.scale == pytest.approx(3.0, rel=0.05)
     assert found.floor_px == 0
+
+
+def test_corners_nearly_alike_count_alike():
+    """A floor that drowns the detector's sigmas leaves plain least squares."""
+    sigma = np.random.default_rng(4).uniform(0.01, 0.05, 4000)
+    found = trust(lengths(np.hypot(sigma, 0.2), 5), sigma)
+    assert found.scale == 0
+    assert found.floor_px == pytest.approx(0.2, rel=0.05)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from vision_robot.calibrate.covariance import NULL, Covariance, covariance
-from vision_robot.calibrate.normal_equations import normal_equations
+from vision_robot.calibrate.normal_equations import cost
 from vision_robot.calibrate.problem import Problem
 from vision_robot.calibrate.refine import Refinement, refine, schur_complement
 from vision_robot.calibrate.state import State
@@ -17,7 +17,7 @@ from vision_robot.types import Array
 __all__ = ["identified", "tilt_spread"]
 
 PARABOLIC = 0.4
-"""Largest |log| of found over foretold rise of the cost: brown5 and fisheye stay below 0.1, bent valleys above."""
+"""Largest |log| of found over foretold rise of the cost; brown5 and fisheye stay below 0.1."""
 
 VAGUE = 0.1
 """A standard deviation of more than this part of the parameter's scale is no knowledge."""
@@ -65,7 +65,7 @@ def _bent(end: Refinement, problem: Problem, known: Covariance, variance: float)
     gain = np.linalg.solve(equations.pose, equations.border.transpose(0, 2, 1))
     for step in (2 * sigma, -2 * sigma):
         moved = end.state.moved(problem.free, step, -gain @ step)
-        rise = normal_equations(moved, problem).cost - equations.cost if moved else np.inf
+        rise = cost(moved, problem) - equations.cost if moved else np.inf
         if not abs(np.log(max(rise, 1e-300) / (2 * variance))) <= PARABOLIC:
             break
     else:

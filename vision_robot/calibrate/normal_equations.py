@@ -21,7 +21,7 @@ from vision_robot.calibrate.warp import Warp
 from vision_robot.geometry import SE3
 from vision_robot.types import Array, Float
 
-__all__ = ["NormalEquations", "normal_equations", "residuals"]
+__all__ = ["NormalEquations", "cost", "normal_equations", "residuals"]
 
 BLOCK_POINTS = 4096
 """Corners handled at once: their Jacobian then stays in the second-level cache."""
@@ -53,6 +53,13 @@ def residuals(state: State, seen: Observations) -> Float[Array, "views 2 n"]:
     return np.where(seen.present[:, None], error - seen.pixels, 0.0)
 
 
+def cost(state: State, problem: Problem) -> float:
+    """The cost alone: a fifth of the work of `normal_equations`."""
+    weighted = residuals(state, problem.seen) * problem.seen.weight[:, None]
+    off = (state.shared_parameters - problem.prior_mean)[problem.free]
+    return 0.5 * float(np.vdot(weighted, weighted) + problem.prior_information[problem.free] @ off**2)
+
+
 def normal_equations(state: State, problem: Problem) -> NormalEquations:
     """Evaluate cost, gradient and Gauss-Newton matrix; an infinite cost where a board lies behind."""
     seen, free = problem.seen, problem.free
@@ -82,9 +89,9 @@ def normal_equations(state: State, problem: Problem) -> NormalEquations:
     pose_part = slice(p, p + 6)
     known = problem.prior_information[free]
     off = (state.shared_parameters - problem.prior_mean)[free]
-    cost = float(full[:, -1, -1].sum() + known @ off**2) / 2
+    total_cost = float(full[:, -1, -1].sum() + known @ off**2) / 2
     return NormalEquations(
-        cost=cost if visible else np.inf,
+        cost=total_cost if visible else np.inf,
         shared=total[:, :p] + np.diag(known),
         border=full[:, :p, pose_part],
         pose=full[:, pose_part, pose_part],

@@ -31,20 +31,22 @@ class Observations:
     @classmethod
     def of(cls, corners: Sequence[Corners], board_points: Float[Array, "m 3"]) -> "Observations":
         """Gather corners; raises BadParameter where an id names no board point."""
-        views, n = len(corners), max(map(len, corners), default=0)
-        points, pixels = np.zeros((views, 3, n)), np.zeros((views, 2, n))
-        weight, ids, sigma_px = np.zeros((views, n)), np.full((views, n), -1), np.ones((views, n))
-        for i, view in enumerate(corners):
-            if len(view) and view.ids.max() >= len(board_points):
-                allowed = f"below the board's {len(board_points)} points"
-                raise BadParameter(f"corner id in {view.image}", int(view.ids.max()), allowed)
-            m = len(view)
-            points[i, :, :m] = board_points[view.ids].T
-            pixels[i, :, :m] = view.pixels.T
-            weight[i, :m] = 1 / view.sigma_px
-            ids[i, :m] = view.ids
-            sigma_px[i, :m] = view.sigma_px
-        return cls(points, pixels, weight, ids, sigma_px)
+        counts = np.array([len(view) for view in corners], dtype=int)
+        views, n = len(corners), int(counts.max(initial=0))
+        held = np.arange(n) < counts[:, None]
+        points, pixels = np.zeros((views, n, 3)), np.zeros((views, n, 2))
+        ids, sigma_px = np.full((views, n), -1), np.ones((views, n))
+        if n:
+            ids[held] = np.concatenate([view.ids for view in corners])
+            pixels[held] = np.concatenate([view.pixels for view in corners])
+            sigma_px[held] = np.concatenate([view.sigma_px for view in corners])
+        if ids.max(initial=-1) >= len(board_points):
+            i = int(np.argmax(ids.max(axis=1)))
+            allowed = f"below the board's {len(board_points)} points"
+            raise BadParameter(f"corner id in {corners[i].image}", int(ids[i].max()), allowed)
+        points[held] = board_points[ids[held]]
+        across = (a.transpose(0, 2, 1).copy() for a in (points, pixels))
+        return cls(*across, np.where(held, 1 / sigma_px, 0.0), ids, sigma_px)
 
     @property
     def present(self) -> Bool[Array, "views n"]:

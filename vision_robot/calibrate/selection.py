@@ -95,8 +95,8 @@ def select(
         folds: See `cross_validate`.
         seed: Which split into folds; the same for all candidates.
         exhaustive: Whether all are tried. Otherwise one of each lens is, then the warps of the
-            lens that is chosen among those, up to two degrees past the best, then the other
-            lenses with that warp.
+            lens that is chosen among those and of simpler ones, up to two degrees past the
+            best, then the other lenses with that warp.
 
     Outliers are left out once, by the candidate that explains the corners best, so that all
     are judged on the same corners. Raises TooFewViews below four views, DegenerateViews or
@@ -127,10 +127,12 @@ def select(
     if exhaustive:
         attempt(range(len(settings)))
     else:
-        lens, degree = settings[trials.choice()].model, None
+        degree, lenses = None, trials.promising()
         while degree != settings[trials.choice()].warp:
             degree = settings[trials.choice()].warp
-            attempt([i for i, one in enumerate(settings) if one.model == lens and one.warp <= degree + AHEAD])
+            attempt(
+                [i for i, one in enumerate(settings) if one.model in lenses and one.warp <= degree + AHEAD]
+            )
         attempt(
             [i for i, one in enumerate(settings) if one.warp == degree and not trials.hopeless(one.model)]
         )
@@ -183,6 +185,13 @@ class _Trials:
     def choice(self) -> int:
         """The simplest of those."""
         return self.near()[0]
+
+    def promising(self) -> set[str]:
+        """The lens chosen so far and simpler ones that are not hopeless: a richer one may fail on the way."""
+        choice = self.choice()
+        return {self.settings[i].model for i in self.done() if i <= choice} - {
+            model for model in LENSES if self.hopeless(model)
+        }
 
     def hopeless(self, lens: str) -> bool:
         """Whether the lens failed or stayed far behind wherever it was tried."""

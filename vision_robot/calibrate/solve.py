@@ -168,5 +168,7 @@ def _named(views: list[Corners], seen: Observations, keep: Bool[Array, "views n"
 
 def _kept(view: Corners, used: Array) -> Corners:
     """The corners of a view that were used, in the order of its table row."""
+    if np.count_nonzero(used >= 0) == len(view):
+        return view
     keep = np.isin(view.ids, used)
-    return view if keep.all() else Corners(view.image, view.ids[keep], view.pixels[keep], view.sigma_px[keep])
+    return Corners(view.image, view.ids[keep], view.pixels[keep], view.sigma_px[keep])

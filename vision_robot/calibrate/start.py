@@ -6,7 +6,7 @@ bearing vectors, which any lens has; the guess that explains the corners best wi
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 
@@ -27,6 +27,9 @@ from vision_robot.geometry import SE3, Camera, lens_named
 from vision_robot.types import Array
 
 __all__ = ["poses_from_bearings", "start"]
+
+CORNERS_FOR_START = 40
+"""Corners of a board that tell its pose well enough to start from."""
 
 GOOD_START = 0.01
 """Median error, as a part of the picture's width, below which a closed form needs no rival."""
@@ -98,6 +101,7 @@ def poses_from_bearings(camera: Camera, seen: Observations) -> SE3:
     M = [r1 r2 t], solved linearly for M. Unlike a homography of pixels this holds for
     rays at and beyond 90 degrees from the axis.
     """
+    seen = _thinned(seen)
     views, n = seen.ids.shape
     rays = camera.unproject(seen.pixels.transpose(0, 2, 1))
     usable = seen.present & np.isfinite(rays[..., 0])
@@ -128,3 +132,12 @@ def poses_from_bearings(camera: Camera, seen: Observations) -> SE3:
     rotation = U @ Vt
     origin = M[..., 2] * spread[:, None] - np.einsum("vij,vj->vi", rotation[..., :2], centre)
     return SE3(rotation, origin)
+
+
+def _thinned(seen: Observations) -> Observations:
+    """Some of the corners of whole boards: a start gains nothing from the others."""
+    n = seen.ids.shape[1]
+    if n <= 2 * CORNERS_FOR_START or not seen.present.all():
+        return seen
+    some = np.linspace(0, n - 1, CORNERS_FOR_START).astype(int)
+    return Observations(*(getattr(seen, field.name)[..., some] for field in fields(seen)))

@@ -82,8 +82,7 @@ def find_any_grid(grey: Grey) -> Grid | None:
         found, pixels, meta = cv2.findChessboardCornersSBWithMeta(small, (3, 3), flags)
         if found:
             grid = np.asarray(pixels, dtype=float).reshape(*meta.shape, 2)
-            # The lit part of a board in hard shadow looks like a smaller board, but not when levelled.
-            if is_whole_board(small, grid) and is_whole_board(_levelled(small), grid):
+            if is_whole_board(small, grid):
                 return _original(grid.reshape(-1, 2), small, grey).reshape(grid.shape)
     return None
 
@@ -114,13 +113,14 @@ def _quick(grey: Grey) -> Iterator[_Attempt]:
     small = _shrinking(grey, SMALL_PX)
     yield _Attempt(_quads(QUICK), small)
     yield _Attempt(_sectors(SECTOR), small)
+    # Before any verdict on size: the lit part of a board in hard shadow looks like a smaller board.
+    yield _Attempt(_sectors(SECTOR_PATIENT), small, _levelled)
 
 
 def _patient(grey: Grey) -> Iterator[_Attempt]:
     """What finds boards that are faint, noisy, blurred, small or very oblique."""
     long_side = max(grey.shape)
     large, small = _shrinking(grey, LARGE_PX), _shrinking(grey, SMALL_PX)
-    yield _Attempt(_sectors(SECTOR_PATIENT), small, _levelled)
     yield _Attempt(_sectors(SECTOR_PATIENT), large)
     yield _Attempt(_quads(PATIENT), large)
     yield _Attempt(_quads(FILTERED), small, lambda picture: cv2.medianBlur(_stretched(picture), 5))

@@ -1,6 +1,6 @@
 """Ordering points that lie on a lattice, in perspective and through a lens.
 
-A lattice is grown from one point outwards, each step as long as the last one: so neither
+A lattice is grown from one point outwards, each step like the last one or those beside it: so neither
 straight lines nor a homography is assumed. Which lattice site is which is read off the outline of
 what has grown, which must be the board's own.
 """
@@ -16,8 +16,8 @@ __all__ = ["match_lattice"]
 
 Site = tuple[int, int]
 
-STEP_TOLERANCE = 0.3
-"""How far a point may lie from where the last step leads, as a share of the step."""
+STEP_TOLERANCE = 0.4
+"""How far a point may lie from where the step leads, as a share of the step."""
 
 MOST_POINTS = 600
 """The smallest points beyond this number are left out: they are noise."""
@@ -27,7 +27,7 @@ SEEDS = 10
 ALONG = ((1, 0), (-1, 0), (0, 1), (0, -1))
 DIAGONAL = ((1, 1), (-1, -1), (1, -1), (-1, 1))
 
-SIZE_TOLERANCE = 1.7
+SIZE_TOLERANCE = 2.0
 """Largest ratio of the sizes of neighbours."""
 
 MAPS = [
@@ -110,15 +110,17 @@ def _grow(
     while queue:
         site, moves = queue.popleft()
         here = points[placed[site]]
-        reach = STEP_TOLERANCE * np.linalg.norm(steps[site], axis=1).min()
         for i, j in moves:
             there = (site[0] + i, site[1] + j)
             if there in placed:
                 continue
-            distance = np.linalg.norm(points - (here + np.array([i, j]) @ steps[site]), axis=1)
+            step = _step_beside(site, (i, j), placed, points)
+            step = np.array([i, j]) @ steps[site] if step is None else step
+            distance = np.linalg.norm(points - (here + step), axis=1)
             distance[used | ~_alike(sizes, float(sizes[placed[site]]))] = np.inf
             best = int(np.argmin(distance))
-            if distance[best] > reach:
+            shortest = np.linalg.norm(step) if moves is ALONG else np.linalg.norm(steps[site], axis=1).min()
+            if distance[best] > STEP_TOLERANCE * shortest:
                 continue
             placed[there], used[best] = best, True
             steps[there] = steps[site].copy()
@@ -131,6 +133,17 @@ def _grow(
             queue.extend((site, DIAGONAL) for site in beyond)
             beyond = []
     return placed
+
+
+def _step_beside(
+    site: Site, move: tuple[int, int], placed: dict[Site, int], points: Float[Array, "n 2"]
+) -> Float[Array, "2"] | None:
+    """The same step in the lines to both sides, where it has been made: it tells more than the last one."""
+    (x, y), (i, j) = site, move
+    beside = [(x - j, y + i), (x + j, y - i)]
+    pairs = [(s, (s[0] + i, s[1] + j)) for s in beside]
+    known = [points[placed[e]] - points[placed[s]] for s, e in pairs if s in placed and e in placed]
+    return np.mean(known, axis=0) if known else None
 
 
 def _alike(sizes: Float[Array, "n"], size: float | Float[Array, "n 1"]) -> Bool[Array, "*m n"]:
