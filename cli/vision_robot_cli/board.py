@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from vision_robot_cli.options import Json
+from vision_robot_cli.options import BoardOption, Json
 
 __all__ = ["board"]
 
@@ -14,10 +14,13 @@ def board(
     board: Annotated[
         str, typer.Option(help="chessboard, charuco, circles, acircles or aprilgrid.")
     ] = "chessboard",
-    size: Annotated[str, typer.Option(help="Inner corners (or points) across x down.")] = "9x6",
+    size: Annotated[
+        str, typer.Option(help="Across x down: inner corners; points of circles; squares of charuco; tags.")
+    ] = "9x6",
     square: Annotated[
         str, typer.Option(help="Side of a square or pitch of points, with its unit: 25mm, 1in.")
     ] = "25mm",
+    board_option: BoardOption = None,
     out: Annotated[Path, typer.Option("-o", "--out", help="File to write: *.pdf, *.svg or *.png.")] = Path(
         "board.pdf"
     ),
@@ -37,13 +40,12 @@ def board(
 
     Example: vr board --size 9x6 --square 25mm -o board.pdf
     """
-    from vision_robot.calibrate.boards import board_named
     from vision_robot.calibrate.boards.paper import on_page
     from vision_robot.calibrate.boards.printing import print_drawing
+    from vision_robot_cli.calibration_input import target as chosen
     from vision_robot_cli.output import emit_json
-    from vision_robot_cli.quantities import length_m, whole_pair
 
-    target = board_named(board, whole_pair(size, "--size"), length_m(square, "--square"))
+    target = chosen(board, size, square, board_option or ())
     drawing, sheet = target.drawing(), "none"
     if page != "none" and (page or out.suffix.lower() == ".pdf"):
         drawing, sheet = on_page(drawing, page)

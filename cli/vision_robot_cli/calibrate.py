@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from vision_robot_cli.options import Json, Out, Report, Seed
+from vision_robot_cli.options import BoardOption, Json, Out, Report, Seed
 
 __all__ = ["calibrate"]
 
@@ -20,10 +20,13 @@ def calibrate(
     board: Annotated[
         str, typer.Option(help="chessboard, charuco, circles, acircles or aprilgrid.")
     ] = "chessboard",
-    size: Annotated[str, typer.Option(help="Inner corners (or points) across x down.")] = "9x6",
+    size: Annotated[
+        str, typer.Option(help="Across x down: inner corners; points of circles; squares of charuco; tags.")
+    ] = "9x6",
     square: Annotated[
         str, typer.Option(help="Side of a square or pitch of points: 25mm, 1in, 0.025m.")
     ] = "25mm",
+    board_option: BoardOption = None,
     model: Annotated[
         str, typer.Option(help="pinhole, brown5, brown8 or fisheye; auto: by views held out.")
     ] = "brown5",
@@ -80,7 +83,7 @@ def calibrate(
     if corners or model_points:
         given = calibration_input.from_corner_files(corners, model_points, image_size)
     else:
-        target = calibration_input.target(board, size, square)
+        target = calibration_input.target(board, size, square, board_option or ())
         given = (
             calibration_input.from_pictures(images, target)
             if images

@@ -26,7 +26,6 @@ __all__ = [
     "from_pictures",
     "rendered",
     "rendered_folder",
-    "settings",
     "target",
 ]
 
@@ -92,9 +91,18 @@ def candidates(model: str, skew: bool, fix: Sequence[str], prior: Sequence[str],
     ]
 
 
-def target(board: str, size: str, square: str) -> Board:
-    """The options --board, --size and --square."""
-    return board_named(board, whole_pair(size, "--size"), length_m(square, "--square"))
+def target(board: str, size: str, square: str, options: Sequence[str] = ()) -> Board:
+    """The options --board, --size, --square and --board-option."""
+    given: dict[str, float | str] = {}
+    for word in options:
+        name, equals, value = word.partition("=")
+        if not equals:
+            raise BadParameter("--board-option", word, "a name and a value, such as dictionary=DICT_4X4_50")
+        try:
+            given[name.strip()] = float(value)
+        except ValueError:
+            given[name.strip()] = value.strip()
+    return board_named(board, whole_pair(size, "--size"), length_m(square, "--square"), **given)
 
 
 def from_corner_files(

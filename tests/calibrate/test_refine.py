@@ -7,9 +7,9 @@ from tests.views import CAMERAS, make_views
 from vision_robot.calibrate.normal_equations import normal_equations
 from vision_robot.calibrate.observations import Observations
 from vision_robot.calibrate.problem import Problem
+from vision_robot.calibrate.refine import arrow_solve, refine, schur_complement
 from vision_robot.calibrate.state import State
 from vision_robot.calibrate.warp import Warp
-from vision_robot.calibrate.refine import arrow_solve, refine, schur_complement
 from vision_robot.errors import NoConvergence
 
 FLAT = Warp.none(88)

@@ -9,16 +9,15 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from vision_robot.calibrate.corner_positions import corners_in_cam
-from vision_robot.calibrate.identifiability import tilt_spread
 from vision_robot.calibrate.picture import Picture
-from vision_robot.calibrate.projection_uncertainty import projection_covariance
+from vision_robot.calibrate.projection_uncertainty import picture_grid, projection_covariance
 from vision_robot.calibrate.result import CalibrationResult
 from vision_robot.calibrate.whiteness import neighbour_correlation
 from vision_robot.errors import BadParameter
 from vision_robot.geometry.camera import AFFINE_NAMES
 from vision_robot.types import Array, Bool, Float
 
-__all__ = ["advice"]
+__all__ = ["advice", "advice_by_topic", "outlying_views"]
 
 REGIONS = (
     *("upper left corner", "upper edge", "upper right corner"),
@@ -29,11 +28,19 @@ REGIONS = (
 
 UNSEEN_FACTOR = 2.0
 """Times the uncertainty in the best third of the picture, from which a part without corners is a gap."""
-LITTLE_TILT = np.radians(20)
+ROUGH = 0.01
+"""Share of the diagonal past which uncertainty is no longer proportional to the noise."""
+STEEP = np.radians(20)
+FEW_STEEP = 3
+"""Fewer steep views than these let a single one decide the focal length."""
+ONE_AXIS = 0.15
+"""Lean about the second axis over that about the first, below which the second counts as missing."""
+FEW_VIEWS = 10
 FAR_TO_NEAR = 1.25
 MANY_MORE = 10
 """Times the views there are: nobody takes so many more of the same kind."""
 BAD_VIEW = 2.0
+MOST_NAMED = 4
 SURE_Z = 4.0
 """Standard deviations: one in 30 000 by chance."""
 SIGNIFICANT = 2.0
@@ -57,9 +64,36 @@ def advice(result: CalibrationResult, *, wanted_px: float | None = None) -> list
     """
     if wanted_px is not None and not wanted_px > 0:
         raise BadParameter("wanted projection uncertainty", wanted_px, "positive, in pixels")
-    rules = (_undetermined, _residuals, _views, _coverage, _tilt, _distance, _ties, _significance)
-    sentences = [sentence for rule in rules for sentence in rule(result)]
+    sentences = [sentence for said in advice_by_topic(result).values() for sentence in said]
     return sentences if wanted_px is None else [*_enough(result, wanted_px), *sentences]
+
+
+def advice_by_topic(result: CalibrationResult) -> dict[str, tuple[str, ...]]:
+    """The sentences of `advice` by what they are about, topics without any included.
+
+    Topics, in the order of `advice`: "determined", "residuals", "views", "coverage", "tilt",
+    "distance", "count", "ties", "significance".
+    """
+    rules = {
+        "determined": _undetermined,
+        "residuals": _residuals,
+        "views": _views,
+        "coverage": _coverage,
+        "tilt": _tilt,
+        "distance": _distance,
+        "count": _count,
+        "ties": _ties,
+        "significance": _significance,
+    }
+    return {topic: tuple(rule(result)) for topic, rule in rules.items()}
+
+
+def outlying_views(result: CalibrationResult) -> Bool[Array, "views"]:
+    """Views whose rms is at least twice the median one, and more than chance would make it."""
+    rms = result.view_rms_px
+    corners = np.array([len(view) for view in result.corners])
+    # The mean of 2n squares of noise scatters by 1/sqrt(n) of itself, its root by half of that.
+    return rms > np.maximum(BAD_VIEW, 1 + SURE_Z / (2 * np.sqrt(corners))) * np.median(rms)
 
 
 def _enough(result: CalibrationResult, wanted_px: float) -> Iterator[str]:
@@ -70,7 +104,7 @@ def _enough(result: CalibrationResult, wanted_px: float) -> Iterator[str]:
         more = int(np.ceil(views * ((sigma / wanted_px) ** 2 - 1)))
         like = f"about {more} more views like these {views} would do, fewer chosen as the next best view."
         yield (
-            f"The projection is known to {sigma:.2g} px, {wanted_px:.2g} px are asked for: "
+            f"The projection is known to {_number(sigma)} px, {_number(wanted_px)} px are asked for: "
             + (
                 like
                 if more <= MANY_MORE * views
@@ -82,32 +116,39 @@ def _enough(result: CalibrationResult, wanted_px: float) -> Iterator[str]:
 def _undetermined(result: CalibrationResult) -> Iterator[str]:
     lost = result.covariance.undetermined
     if lost:
-        views = len(result.corners)
-        yield f"{_listed(lost)} cannot be told from these {views} views: fix them or take a simpler model."
+        them = "it" if len(lost) == 1 else "them"
+        yield (
+            f"These {len(result.corners)} views do not determine {_listed(lost)}, and no sigma is stated for "
+            f"{them}: fix {them} or take a simpler model, unless views with more tilt or at the rim can tell."
+        )
 
 
 def _residuals(result: CalibrationResult) -> Iterator[str]:
     near = neighbour_correlation(result)
     if np.isfinite(near.sigma) and near.z > SURE_Z and near.value > NEIGHBOURS:
         yield (
-            f"The residuals of neighbouring corners agree with a correlation of {near.value:.2f} where noise "
-            f"gives 0 ± {near.sigma:.1g}: the lens model or the flat board is too simple, and every sigma is "
-            "too small. Let the board's shape free or take a richer model."
+            f"The residuals of neighbouring corners correlate by {near.value:.2f} where noise alone gives "
+            f"0 ± {_number(near.sigma, 1)}: the lens model or the flat board is too simple, or the detector "
+            "errs by place. What is systematic is in no sigma, so every sigma is too small. Take a richer "
+            "model or let the board's shape free."
         )
 
 
 def _views(result: CalibrationResult) -> Iterator[str]:
     rms = result.view_rms_px
     median = float(np.median(rms))
-    corners = np.array([len(view) for view in result.corners])
-    # The mean of 2n squares of noise scatters by 1/sqrt(n) of itself, its root by half of that.
-    limit = np.maximum(BAD_VIEW, 1 + SURE_Z / (2 * np.sqrt(corners))) * median
-    for i in np.argsort(-rms):
-        if rms[i] > limit[i]:
-            yield (
-                f"View {result.corners[i].image} has an rms of {rms[i]:.2g} px, {rms[i] / median:.1f} times "
-                "the median view: look for blur or a bent board, and take it again."
-            )
+    worst = [int(i) for i in np.argsort(-rms) if outlying_views(result)[i]]
+    if worst:
+        named = [
+            f"{result.corners[i].image} ({_number(rms[i])} px, {rms[i] / median:.1f} times the median)"
+            for i in worst[:MOST_NAMED]
+        ]
+        named += [f"{len(worst) - MOST_NAMED} more"] if len(worst) > MOST_NAMED else []
+        verb, them = ("fits", "it") if len(worst) == 1 else ("fit", "them")
+        yield (
+            f"{_listed(named)} {verb} much worse than the median view, whose rms is {_number(median)} px: "
+            f"look for blur, a bent board or a misplaced corner, and take {them} again."
+        )
 
 
 def _coverage(result: CalibrationResult) -> Iterator[str]:
@@ -117,59 +158,77 @@ def _coverage(result: CalibrationResult) -> Iterator[str]:
     best = float(np.sqrt(np.quantile(variance, 1 / 3)))
     pixels = np.concatenate([view.pixels for view in result.corners])
     size = np.array([camera.width, camera.height])
-    missing = []
+    missing, worst = [], 0.0
     for i, name in enumerate(REGIONS):
         here = _inside(picture.pixels, size, i)
         if not here.any() or _inside(pixels, size, i).any():
             continue
         sigma = float(np.sqrt(np.mean(variance[here])))
         if sigma > UNSEEN_FACTOR * best:
-            missing.append(f"{name} ({sigma:.2g} px)")
+            missing.append(f"{name} ({'' if missing else 'projection uncertain by '}{_number(sigma)} px)")
+            worst = max(worst, sigma)
     if missing:
+        rough = " Numbers so large tell no more than the order." if worst > ROUGH * np.hypot(*size) else ""
         yield (
-            f"No corner was seen in the {_listed(missing)} of the picture. So little is the projection known "
-            f"there, against {best:.2g} px where it is known best: hold the board there."
+            f"No board corner was seen in the {_listed(missing)} of the picture, against {_number(best)} px "
+            f"in its best third.{rough} Add views that show the board there."
         )
-    folded = 1 - float(np.isfinite(projection_covariance(result, _grid(size))[..., 0, 0]).mean())
+    known = np.isfinite(projection_covariance(result, picture_grid(camera, 24, 18))[..., 0, 0])
+    folded = 1 - float(known.mean())
     if folded:
         yield (
-            f"The fitted lens folds over in {100 * folded:.0f} % of the picture, where nothing can be "
-            "measured: show the board there, or take a simpler model."
+            f"The fitted lens folds over in {_number(100 * folded)} % of the picture and has no ray there, "
+            "so nothing can be measured: show the board there, or take a simpler model."
         )
 
 
 def _tilt(result: CalibrationResult) -> Iterator[str]:
-    spread = tilt_spread(result.cam_from_board)
-    if spread < LITTLE_TILT:
+    normals = result.cam_from_board.rotation[:, :, 2]
+    mean = normals.mean(axis=0)
+    lean = np.arccos(np.clip(normals @ mean / np.linalg.norm(mean), -1, 1))
+    steep = int((lean >= STEEP).sum())
+    if steep < FEW_STEEP:
         yield (
-            f"The boards lean by no more than {np.degrees(spread):.0f}° from their mean: only tilt tells the "
-            "focal length from the distance. Add views tilted by 30° to 50° in different directions."
+            f"The boards are hardly tilted against each other: {steep} of {len(lean)} by "
+            f"{np.degrees(STEEP):.0f}° or more from their mean, the most by {np.degrees(lean.max()):.0f}°. "
+            "Tilt is what tells the focal length from the distance: add views tilted by 30° to 50° in "
+            "different directions."
         )
         return
-    lean = result.cam_from_board.rotation[:, :2, 2]
-    lean = lean - lean.mean(axis=0)
-    least, most = np.linalg.eigvalsh(lean.T @ lean)
-    if least < 0.15**2 * most:
-        across = np.linalg.eigh(lean.T @ lean)[1][:, 0]
-        edges = "left or right" if abs(across[0]) > abs(across[1]) else "upper or lower"
+    across = (normals - mean)[:, :2]
+    (least, most), directions = np.linalg.eigh(across.T @ across)
+    if least < ONE_AXIS**2 * most:
+        missing = directions[:, 0]
+        edges = "left or right" if abs(missing[0]) > abs(missing[1]) else "upper or lower"
         times = np.sqrt(most / max(least, 1e-12))
+        much = f"{times:.0f} times" if times < 100 else "more than 100 times"
         yield (
-            f"The boards lean {times:.0f} times as much in one direction as across it: "
-            f"add views with the {edges} edge of the board away from the camera."
+            f"The boards are tilted about one axis {much} as much as about the axis across it: add "
+            f"views with the {edges} edge of the board away from the camera."
         )
 
 
 def _distance(result: CalibrationResult) -> Iterator[str]:
     distance = [np.linalg.norm(np.nanmean(points, axis=0)) for points in corners_in_cam(result)]
-    ratio = float(np.nanmax(distance) / np.nanmin(distance))
-    if ratio < FAR_TO_NEAR:
+    near, far = float(np.nanmin(distance)), float(np.nanmax(distance))
+    if far < FAR_TO_NEAR * near:
         yield (
-            f"The farthest board stood only {ratio:.2f} times as far away as the nearest: add nearer and "
-            "farther ones, which tell more of the lens."
+            f"The farthest board, at {1000 * far:.0f} mm, stood only {far / near:.2f} times as far away as "
+            f"the nearest, at {1000 * near:.0f} mm: add nearer and farther ones, which test the lens better."
+        )
+
+
+def _count(result: CalibrationResult) -> Iterator[str]:
+    views = len(result.corners)
+    if views < FEW_VIEWS:
+        yield (
+            f"Only {views} {'views were' if views > 1 else 'view was'} used: twice as many of the same kind "
+            "would make every sigma smaller by a factor of about 1.4."
         )
 
 
 def _ties(result: CalibrationResult) -> Iterator[str]:
+    # `sigma` names nothing undetermined: of that more is said than that it is tied.
     names = [name for name in result.camera.parameter_names if name in result.sigma]
     index = [result.camera.parameter_names.index(name) for name in names]
     C = result.covariance.intrinsics[np.ix_(index, index)]
@@ -192,13 +251,17 @@ def _significance(result: CalibrationResult) -> Iterator[str]:
     values = dict(zip(result.camera.parameter_names, result.camera.parameters, strict=True))
     needed = {"fx", "fy", "cx", "cy", *result.settings.priors}
     small = [
-        f"{name} = {values[name]:.2g} ± {sigma:.1g}"
+        f"{name} = {_with_sigma(values[name], sigma)}"
         for name, sigma in result.sigma.items()
         if name not in needed and abs(values[name]) < SIGNIFICANT * sigma
     ]
     if small:
-        which = "does not differ" if len(small) == 1 else "do not differ"
-        yield f"{_listed(small)} {which} from zero by two sigma: a model without may predict as well."
+        one = len(small) == 1
+        yield (
+            f"{'' if one else 'Taken one at a time, '}{_listed(small)} {'does' if one else 'do'} not differ "
+            f"from zero by two sigma: a model without {'it' if one else 'one of them'} may predict as well. "
+            "Views held back from the fit would tell; the rms cannot."
+        )
 
 
 def _inside(pixels: Float[Array, "n 2"], size: Array, region: int) -> Bool[Array, "n"]:
@@ -210,10 +273,16 @@ def _inside(pixels: Float[Array, "n 2"], size: Array, region: int) -> Bool[Array
     return np.all((where >= low) & (where <= high), axis=1)
 
 
-def _grid(size: Array) -> Float[Array, "h w 2"]:
-    u, v = np.linspace(0, size[0] - 1, 24), np.linspace(0, size[1] - 1, 18)
-    return np.stack(np.meshgrid(u, v), axis=-1)
-
-
 def _listed(names: Sequence[str]) -> str:
-    return " and ".join(", ".join(names).rsplit(", ", 1)) if len(names) > 1 else names[0]
+    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
+
+
+def _number(value: float, digits: int = 2) -> str:
+    """To so many digits and never with an exponent: 350, 25, 0.38, 0.00012."""
+    return np.format_float_positional(value, precision=digits, unique=False, fractional=False, trim="-")
+
+
+def _with_sigma(value: float, sigma: float) -> str:
+    """Both to the second digit of sigma: 18 ± 10, 0.0003 ± 0.0081."""
+    decimals = max(0, 1 - int(np.floor(np.log10(sigma)))) if sigma > 0 else 6
+    return f"{value:.{decimals}f} ± {sigma:.{decimals}f}"

@@ -45,8 +45,8 @@ class Observations:
             allowed = f"below the board's {len(board_points)} points"
             raise BadParameter(f"corner id in {corners[i].image}", int(ids[i].max()), allowed)
         points[held] = board_points[ids[held]]
-        across = (a.transpose(0, 2, 1).copy() for a in (points, pixels))
-        return cls(*across, np.where(held, 1 / sigma_px, 0.0), ids, sigma_px)
+        points, pixels = points.transpose(0, 2, 1).copy(), pixels.transpose(0, 2, 1).copy()
+        return cls(points, pixels, np.where(held, 1 / sigma_px, 0.0), ids, sigma_px)
 
     @property
     def present(self) -> Bool[Array, "views n"]:

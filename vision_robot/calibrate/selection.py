@@ -40,6 +40,9 @@ AHEAD = 2
 HOPELESS = 1.5
 """A lens whose held-out error there is so many times the best one's is not tried further."""
 
+NEARLY = 1.05
+"""A lens whose held-out error is so many times the chosen one's there is followed to other degrees as well."""
+
 MOSTLY = 0.9
 """Share of the corners that a fit must keep for its choice of outliers to be believed."""
 
@@ -187,11 +190,10 @@ class _Trials:
         return self.near()[0]
 
     def promising(self) -> set[str]:
-        """The lens chosen so far and simpler ones that are not hopeless: a richer one may fail on the way."""
-        choice = self.choice()
-        return {self.settings[i].model for i in self.done() if i <= choice} - {
-            model for model in LENSES if self.hopeless(model)
-        }
+        """The lens chosen so far, and simpler ones nearly as good: a richer one may fail on the way."""
+        done, choice = self.done(), self.choice()
+        limit = NEARLY * done[choice].rms_px
+        return {self.settings[i].model for i, e in done.items() if i <= choice and e.rms_px <= limit}
 
     def hopeless(self, lens: str) -> bool:
         """Whether the lens failed or stayed far behind wherever it was tried."""

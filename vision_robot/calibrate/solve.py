@@ -109,7 +109,7 @@ def _usable(
     centre = seen.points.sum(axis=2) / np.maximum(present.sum(axis=1), 1)[:, None]
     offset = np.where(present[:, None], seen.points - centre[..., None], 0.0)
     spread = np.linalg.eigvalsh(offset @ offset.transpose(0, 2, 1))  # the middle one is the board's width
-    wide = np.asarray(spread[:, 1] > 1e-6 * spread[:, 2])
+    wide: Array = spread[:, 1] > 1e-6 * spread[:, 2]
     for view, is_wide in zip(kept, wide, strict=True):
         if not is_wide:
             rejected.append(Rejected(view.image, "all corners lie on one line of the board"))
@@ -142,7 +142,7 @@ def _without_outliers(
         if (keep == seen.present).all():
             break
         rejected += _named(views, seen, keep)
-        alive = keep.any(axis=1)
+        alive: Array = np.any(keep, axis=1)
         views = [view for view, is_alive in zip(views, alive, strict=True) if is_alive]
         if len(views) < FEWEST_VIEWS:
             break

@@ -9,7 +9,7 @@ from vision_robot.calibrate.judgement import Judgement
 from vision_robot.calibrate.result import CalibrationResult
 from vision_robot.calibrate.selection import Selection
 from vision_robot.geometry import Camera
-from vision_robot.report.calibration_advice import advice
+from vision_robot.report.calibration_advice import remarks
 from vision_robot.report.calibration_findings import AgainstTruth, Findings, find
 from vision_robot.report.calibration_tables import parameter_table, rejection_table, view_table
 from vision_robot.report.judgement_sections import judgement_sections, selection_section
@@ -60,7 +60,7 @@ def calibration_page(
     """
     findings = find(result, truth)
     sections = [
-        Section("Result", (_facts(findings), Remarks(advice(findings)))),
+        Section("Result", (_facts(findings), Remarks(remarks(findings)))),
         Section("Parameters", (parameter_table(findings), *_about_parameters(findings))),
         Section(
             "Residuals",

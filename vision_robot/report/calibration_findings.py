@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vision_robot.calibrate.advice import outlying_views
 from vision_robot.calibrate.corner_positions import corners_in_cam
 from vision_robot.calibrate.projection_uncertainty import (
     PictureError,
@@ -21,8 +22,6 @@ from vision_robot.geometry import Camera
 from vision_robot.types import Array, Bool, Float
 
 __all__ = ["AgainstTruth", "Findings", "find"]
-
-PICTURE_CORNERS = ("top-left", "top-right", "bottom-left", "bottom-right")
 
 
 @dataclass(frozen=True)
@@ -58,8 +57,6 @@ class Findings:
     outlying: Bool[Array, "views"]
     covered: float
     """Part of the picture inside the outline of at least one board."""
-    gap_px: dict[str, float]
-    """From each corner of the picture to the nearest board corner."""
     grid: Float[Array, "h w 2"]
     sigma_at_infinity: Float[Array, "h w"]
     sigma_at_boards: Float[Array, "h w"]
@@ -91,25 +88,14 @@ def find(result: CalibrationResult, truth: Camera | None = None) -> Findings:
         largest_residual=float(np.abs(weighted).max() / factor) if factor else 0.0,
         tilt=np.arccos(np.clip(np.abs(result.cam_from_board.rotation[:, 2, 2]), 0, 1)),
         distance=distance,
-        outlying=_outlying(result),
+        outlying=outlying_views(result),
         covered=_covered(result),
-        gap_px=_gaps(result),
         grid=grid,
         sigma_at_infinity=projection_sigma(result, grid),
         sigma_at_boards=worst_sigma(at_boards),
         expected_error=expected_error(result),
         truth=None if truth is None else _against(result, truth),
     )
-
-
-def _outlying(result: CalibrationResult) -> Bool[Array, "views"]:
-    """Views whose rms is half as large again as the median one, and more than chance would make it.
-
-    The rms of n points scatters by 1/sqrt(4 n) of itself where residuals are noise.
-    """
-    rms = result.view_rms_px
-    chance = 1 + 5 / np.sqrt(4 * np.array([len(view) for view in result.corners]))
-    return rms > np.maximum(1.5, chance) * np.median(rms)
 
 
 def _covered(result: CalibrationResult) -> float:
@@ -122,16 +108,6 @@ def _covered(result: CalibrationResult) -> float:
         hull = cv2.convexHull((view.pixels / shrink).round().astype(np.int32))
         cv2.fillConvexPoly(mask, hull, 1)
     return float(mask.mean())
-
-
-def _gaps(result: CalibrationResult) -> dict[str, float]:
-    pixels = np.concatenate([view.pixels for view in result.corners])
-    right, bottom = result.camera.width - 1, result.camera.height - 1
-    places = [(0, 0), (right, 0), (0, bottom), (right, bottom)]
-    return {
-        name: float(np.linalg.norm(pixels - place, axis=1).min())
-        for name, place in zip(PICTURE_CORNERS, places, strict=True)
-    }
 
 
 def _against(result: CalibrationResult, truth: Camera) -> AgainstTruth:

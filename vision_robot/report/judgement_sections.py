@@ -55,9 +55,9 @@ def _budget(budget: ErrorBudget) -> tuple[Part, ...]:
     ]
     rows.append(("all together", compact(budget.total_px), compact(budget.total_mm), "", "added in squares"))
     caption = (
-        "Error of the projection, root mean square over the picture after the rotation that suits best; mm on a "
-        f"plane facing the camera at {compact(1000 * budget.distance_m)} mm. “At most” is what could hide in the "
-        "noise (95 %)."
+        "Error of the projection, root mean square over the picture after the rotation that suits best; "
+        f"mm on a plane facing the camera at {compact(1000 * budget.distance_m)} mm. “At most” is what "
+        "could hide in the noise (95 %)."
     )
     return (Table(("cause", "px", "mm", "at most px", "why"), tuple(rows), caption, frozenset({1, 2, 3})),)
 
@@ -70,8 +70,8 @@ def _next(views: NextViews, camera: Camera) -> tuple[Part, ...]:
         )
     ]
     caption = (
-        f"Views that lower the projection uncertainty most, now {compact(views.sigma_px)} px rms over the picture: "
-        "with this view alone, and with it and all before it."
+        f"Views that lower the projection uncertainty most, now {compact(views.sigma_px)} px rms over the "
+        "picture: with this view alone, and with it and all before it."
     )
     columns = ("view", "how to hold the board", "alone px", "together px")
     return (Figures((_drawn(views, camera),)), Table(columns, tuple(rows), caption, frozenset({2, 3})))
@@ -92,7 +92,8 @@ def _drawn(views: NextViews, camera: Camera) -> Figure:
         axes = picture_axes(canvas, camera)
         for i, (hull, colour) in enumerate(zip(hulls, view_colours(len(hulls)), strict=True)):
             axes.add_patch(Polygon(hull, facecolor=f"{colour}18", edgecolor=colour, linewidth=1.2))
-            axes.text(*hull.mean(axis=0), str(i + 1), color=colour, ha="center", va="center", bbox=PLATE)
+            u, v = hull.mean(axis=0)
+            axes.text(u, v, str(i + 1), color=colour, ha="center", va="center", bbox=PLATE)
 
     return Figure(
         draw(paint, height_in=picture_height_in(camera)),
@@ -114,8 +115,8 @@ def selection_section(selection: Selection) -> Section:
         for i, one in enumerate(selection.settings)
     )
     caption = (
-        "Lens models and board shapes, judged by the error on views they were not fitted to: the simplest that "
-        "is as good as the best is taken."
+        "Lens models and board shapes, judged by the error on views they were not fitted to: the simplest "
+        "that is as good as the best is taken."
     )
     columns = ("candidate", "numbers", "rms px", "held out px", "why")
     return Section("Choice of model", (Table(columns, rows, caption, frozenset({1, 2, 3})),))

@@ -22,7 +22,7 @@ STEP_TOLERANCE = 0.4
 MOST_POINTS = 600
 """The smallest points beyond this number are left out: they are noise."""
 
-SEEDS = 10
+SEEDS = 5
 
 ALONG = ((1, 0), (-1, 0), (0, 1), (0, -1))
 DIAGONAL = ((1, 1), (-1, -1), (1, -1), (-1, 1))
