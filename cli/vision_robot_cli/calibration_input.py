@@ -33,6 +33,9 @@ Result = TypeVar("Result")
 
 AUTO = "auto"
 
+PICTURES_FOR_A_HINT = 4
+"""Pictures that are searched for a board of another size where none of the asked size is found."""
+
 
 @dataclass
 class CalibrationInput:
@@ -160,7 +163,8 @@ def _detected(source: str, pictures: Mapping[str, Image], board: Board) -> Calib
     wanted = f"{board.name} {board.size}"
     missing = [name for name, view in zip(names, found, strict=True) if view is None]
     if not corners:
-        raise BoardNotFound(len(names), wanted, seen_size(pictures[names[0]]))
+        seen = (seen_size(pictures[name]) for name in names[:PICTURES_FOR_A_HINT])
+        raise BoardNotFound(len(names), wanted, next((size for size in seen if size), None))
     height, width = pictures[names[0]].shape[:2]
     rejected = [Rejected(name, f"no {wanted} board found") for name in missing]
     given = CalibrationInput(

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vision_robot.calibrate.observations import Observations
+from vision_robot.calibrate.weighting import UNDOUBTED, Trust
 from vision_robot.types import Array, Bool, Float
 
 __all__ = ["Problem"]
@@ -22,6 +23,8 @@ class Problem:
     free: Bool[Array, "s"]
     prior_mean: Float[Array, "s"]
     prior_information: Float[Array, "s"]
+    trust: Trust = UNDOUBTED
+    """What the weights of `seen` were made from."""
 
     @classmethod
     def plain(cls, seen: Observations, free: Bool[Array, "s"]) -> "Problem":
@@ -31,6 +34,11 @@ class Problem:
     def of(self, seen: Observations) -> "Problem":
         """The same question asked of other corners."""
         return replace(self, seen=seen)
+
+    def trusting(self, trust: Trust) -> "Problem":
+        """The same corners, weighed by how far the detector's word is trusted."""
+        weight = np.where(self.seen.present, 1 / trust.sigma(self.seen.sigma_px), 0.0)
+        return replace(self, seen=self.seen.with_weight(weight), trust=trust)
 
     def freeing(self, free: Bool[Array, "s"]) -> "Problem":
         """The same corners with other parameters free."""

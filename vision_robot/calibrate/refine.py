@@ -13,6 +13,9 @@ from vision_robot.types import Array, Float
 __all__ = ["Refinement", "arrow_solve", "refine", "schur_complement"]
 
 
+DAMPED_OUT = 1e18
+"""Damping past which no step is left."""
+
 EXACT_PX = 1e-11
 """Residuals of this size [px] are rounding: the corners were made without noise."""
 
@@ -61,6 +64,8 @@ def refine(
             if predicted <= 1e-12 * equations.cost:
                 return Refinement(state, equations, iteration)  # rounding decides the sign now
         damping, growth = max(damping, 1e-6) * growth, growth * 2
+        if damping > DAMPED_OUT:
+            break
     raise NoConvergence(
         f"the calibration did not settle within {max_iterations} iterations: "
         "a simpler --model, more views or a better start is needed"

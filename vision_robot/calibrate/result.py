@@ -8,6 +8,7 @@ from vision_robot.calibrate.corners import Corners
 from vision_robot.calibrate.covariance import Covariance
 from vision_robot.calibrate.settings import Settings
 from vision_robot.calibrate.warp import Warp
+from vision_robot.calibrate.weighting import UNDOUBTED, Trust
 from vision_robot.geometry import SE3, Camera
 from vision_robot.types import Array, Bool, Float
 
@@ -29,7 +30,8 @@ class CalibrationResult:
     """A calibrated camera with everything needed to judge it.
 
     `residuals` holds projected minus seen [px] of each view's corners, (n, 2) in the
-    order of `corners`; `warp` how the board departs from its drawing.
+    order of `corners`; `warp` how the board departs from its drawing; `trust`
+    how far the detector's sigmas were believed.
     """
 
     camera: Camera
@@ -39,6 +41,7 @@ class CalibrationResult:
     residuals: tuple[Float[Array, "_ 2"], ...]
     covariance: Covariance
     settings: Settings
+    trust: Trust = UNDOUBTED
     rejected: tuple[Rejected, ...] = ()
     iterations: int = 0
 

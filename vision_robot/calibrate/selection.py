@@ -41,7 +41,7 @@ HOPELESS = 1.5
 """A lens whose held-out error there is so many times the best one's is not tried further."""
 
 NEARLY = 1.05
-"""A lens whose held-out error is so many times the chosen one's there is followed to other degrees as well."""
+"""A lens whose held-out error is so many times the chosen one's there is followed to other degrees too."""
 
 MOSTLY = 0.9
 """Share of the corners that a fit must keep for its choice of outliers to be believed."""

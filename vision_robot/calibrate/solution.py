@@ -4,10 +4,8 @@ import numpy as np
 
 from vision_robot.calibrate.observations import Observations
 from vision_robot.calibrate.problem import Problem
-from vision_robot.calibrate.refine import refine
 from vision_robot.calibrate.result import CalibrationResult
 from vision_robot.calibrate.state import State
-from vision_robot.calibrate.weighting import trust
 from vision_robot.types import Array, Float
 
 __all__ = ["solution"]
@@ -16,25 +14,18 @@ __all__ = ["solution"]
 def solution(result: CalibrationResult, board_points: Float[Array, "m 3"]) -> tuple[State, Problem]:
     """The state at the minimum and the problem it solves, without the corners left out.
 
-    `board_points` (m, 3) [m] are those the calibration was given. Where the detector's
-    sigmas differ, how far they are trusted is found again from the residuals, and the state
-    is settled anew under these weights.
+    `board_points` (m, 3) [m] are those the calibration was given.
     """
     settings = result.settings
     seen = Observations.of(result.corners, board_points)
     problem = Problem.plain(seen, np.concatenate([result.free, np.ones(len(result.warp), dtype=bool)]))
-    lengths = np.concatenate([np.linalg.norm(residual, axis=1) for residual in result.residuals])
-    told = seen.sigma_px[seen.present]
-    differ = bool(np.ptp(told) > 1e-9)
-    if differ:
-        found = trust(lengths, told)
-        problem = problem.of(seen.with_weight(np.where(seen.present, 1 / found.sigma(seen.sigma_px), 0.0)))
+    problem = problem.trusting(result.trust)
     if settings.priors:
+        lengths = np.concatenate([np.linalg.norm(residual, axis=1) for residual in result.residuals])
         weighted = lengths * problem.seen.weight[seen.present]
         variance = float(np.sum(weighted**2)) / max(result.degrees_of_freedom, 1)
         for name, (mean, sigma) in settings.priors.items():
             i = settings.names.index(name)
             problem.prior_mean[i] = mean
             problem.prior_information[i] = variance / sigma**2
-    state = State(result.camera, result.cam_from_board, result.warp)
-    return (refine(state, problem).state if differ else state), problem
+    return State(result.camera, result.cam_from_board, result.warp), problem

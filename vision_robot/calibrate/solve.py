@@ -68,7 +68,7 @@ def calibrate(
             raise TooFewViews(len(views), FEWEST_VIEWS, given)
     if settings.priors:
         noise = float(np.sqrt(2 * end.equations.cost / max(problem.degrees_of_freedom, 1)))
-        problem = _problem(problem.seen, settings, warp, max(noise, 1e-6))
+        problem = _problem(problem.seen, settings, warp, max(noise, 1e-6)).trusting(problem.trust)
         end = refine(end.state, problem)
     known = identified(end, problem)
     errors, present = residuals(end.state, problem.seen), problem.seen.present
@@ -80,6 +80,7 @@ def calibrate(
         residuals=tuple(e[:, p].T for e, p in zip(errors, present, strict=True)),
         covariance=known,
         settings=settings,
+        trust=problem.trust,
         rejected=(*rejected, *left_out),
         iterations=end.iterations,
     )
@@ -124,9 +125,7 @@ def _trusted(end: Refinement, problem: Problem) -> tuple[Refinement, Problem]:
         return end, problem
     for _ in range(2):
         lengths = np.linalg.norm(residuals(end.state, seen), axis=1)
-        found = trust(lengths[seen.present], seen.sigma_px[seen.present])
-        weight = np.where(seen.present, 1 / found.sigma(seen.sigma_px), 0.0)
-        problem = problem.of(seen.with_weight(weight))
+        problem = problem.trusting(trust(lengths[seen.present], seen.sigma_px[seen.present]))
         end = refine(end.state, problem)
     return end, problem
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from vision_robot.types import Array, Float
 
-__all__ = ["Trust", "trust"]
+__all__ = ["UNDOUBTED", "Trust", "trust"]
 
 
 @dataclass(frozen=True)
@@ -26,6 +26,10 @@ class Trust:
     def sigma(self, sigma_px: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
         """What a corner of detector sigma `sigma_px` really has."""
         return np.hypot(self.scale * sigma_px, self.floor_px)
+
+
+UNDOUBTED = Trust(1.0, 0.0)
+"""The detector taken at its word."""
 
 
 def trust(lengths_px: Float[Array, "n"], sigma_px: Float[Array, "n"]) -> Trust:
