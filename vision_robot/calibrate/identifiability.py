@@ -19,6 +19,10 @@ __all__ = ["identified", "tilt_spread"]
 PARABOLIC = 0.4
 """Largest |log| of found over foretold rise of the cost; brown5 and fisheye stay below 0.1."""
 
+FIRM = 1e-7
+"""Eigenvalue of the scaled Schur complement from which a valley is a parabola: brown5 and fisheye have 1e-5,
+brown8 where its fractions cancel below 1e-9."""
+
 VAGUE = 0.1
 """A standard deviation of more than this part of the parameter's scale is no knowledge."""
 
@@ -59,7 +63,7 @@ def _bent(end: Refinement, problem: Problem, known: Covariance, variance: float)
     S = schur_complement(equations)
     scale = 1 / np.sqrt(np.maximum(np.diag(equations.shared), 1e-300))
     values, vectors = np.linalg.eigh(S * scale[:, None] * scale)
-    if values[0] < NULL:
+    if values[0] < NULL or values[0] > FIRM:
         return ()
     sigma = scale * vectors[:, 0] * np.sqrt(variance / values[0])
     gain = np.linalg.solve(equations.pose, equations.border.transpose(0, 2, 1))

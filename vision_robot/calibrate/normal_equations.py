@@ -8,9 +8,7 @@ matrix has an arrow shape, and only its shared block, its border and its 6x6 dia
 blocks are kept (Triggs et al. 2000, section 6).
 """
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
@@ -23,11 +21,8 @@ from vision_robot.types import Array, Float
 
 __all__ = ["NormalEquations", "cost", "normal_equations", "residuals"]
 
-BLOCK_POINTS = 4096
+BLOCK_POINTS = 8192
 """Corners handled at once: their Jacobian then stays in the second-level cache."""
-
-THREADS_FROM = 8 * BLOCK_POINTS
-"""Corners from which it pays to share the blocks between two threads."""
 
 
 @dataclass(frozen=True)
@@ -69,20 +64,15 @@ def normal_equations(state: State, problem: Problem) -> NormalEquations:
     step = max(1, BLOCK_POINTS // max(n, 1))
     blocks = [slice(start, min(start + step, views)) for start in range(0, views, step)]
 
-    def evaluate(some: list[slice]) -> bool:
-        rows = np.empty((min(step, views), p + 7, 2 * n))
-        for block in some:
-            J = rows[: block.stop - block.start]
-            pose = SE3(state.cam_from_board.rotation[block], state.cam_from_board.translation[block])
-            if not _fill_rows(J, State(state.camera, pose, state.warp), seen[block], free):
-                return False
-            np.matmul(J, J.transpose(0, 2, 1), out=full[block])
-        return True
-
-    if seen.ids.size < THREADS_FROM:
-        visible = evaluate(blocks)
-    else:
-        visible = all(_threads().map(evaluate, (blocks[::2], blocks[1::2])))
+    rows = np.empty((min(step, views), p + 7, 2 * n))
+    visible = True
+    for block in blocks:
+        J = rows[: block.stop - block.start]
+        pose = SE3(state.cam_from_board.rotation[block], state.cam_from_board.translation[block])
+        visible = _fill_rows(J, State(state.camera, pose, state.warp), seen[block], free)
+        if not visible:
+            break
+        np.matmul(J, J.transpose(0, 2, 1), out=full[block])
     if not visible:
         full[...] = 0
     total = full[:, :p].sum(axis=0)
@@ -98,11 +88,6 @@ def normal_equations(state: State, problem: Problem) -> NormalEquations:
         shared_gradient=total[:, -1] + known * off,
         pose_gradient=full[:, pose_part, -1],
     )
-
-
-@cache
-def _threads() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(2)
 
 
 def _on_board(warp: Warp, seen: Observations) -> Float[Array, "views 3 n"]:
@@ -159,5 +144,6 @@ def _fill_rows(J: Float[Array, "views c rows"], state: State, seen: Observations
                 J[:, len(intrinsics) + i, half] = np.einsum("bvn,bvn->vn", in_board, field)
     np.add(fx * x + skew * y, camera.cx - seen.pixels[:, 0], out=J[:, -1, u])
     np.add(fy * y, camera.cy - seen.pixels[:, 1], out=J[:, -1, v])
-    J.reshape(views, -1, 2, n)[...] *= seen.weight[:, None, None, :]
+    if np.any(seen.weight != 1):  # a pass over all rows that equal weights can do without
+        J.reshape(views, -1, 2, n)[...] *= seen.weight[:, None, None, :]
     return True

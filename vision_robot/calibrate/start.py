@@ -28,11 +28,11 @@ from vision_robot.types import Array
 
 __all__ = ["poses_from_bearings", "start"]
 
-CORNERS_FOR_START = 40
+CORNERS_FOR_START = 24
 """Corners of a board that tell its pose well enough to start from."""
 
 GOOD_START = 0.01
-"""Median error, as a part of the picture's width, below which a closed form needs no rival."""
+"""Median error, as a part of the picture's width, below which a guess needs no rival."""
 
 
 def start(seen: Observations, size: tuple[int, int], settings: Settings, warp: Warp) -> State:
@@ -47,8 +47,8 @@ def start(seen: Observations, size: tuple[int, int], settings: Settings, warp: W
             cost = float(np.median(np.abs(residuals(state, seen)[:, 0][seen.present])))
             if cost < best_cost:
                 best, best_cost = state, cost
-        if best_cost < GOOD_START * size[0]:
-            break
+            if best is not None and best_cost < GOOD_START * size[0]:
+                return best
     if best is None:
         raise DegenerateViews(("fx", "fy", "cx", "cy"), "no start explains where the corners are")
     return best
@@ -65,7 +65,6 @@ def _closed_forms(seen: Observations, size: tuple[int, int], model: str, skew: b
     K = closed_form_intrinsics(H, size, skew=skew)
     if K is not None and _plausible(K, size):
         guess = Camera(width, height, K[0, 0], K[1, 1], K[0, 2], K[1, 2], K[0, 1], model)
-        yield guess
         if n_k:
             in_cam = closed_form_poses(K, H).apply(seen.points.transpose(0, 2, 1))
             k1, k2 = closed_form_radial(K, in_cam, pixels, present)
@@ -73,6 +72,7 @@ def _closed_forms(seen: Observations, size: tuple[int, int], model: str, skew: b
             widest = np.hypot(*(in_cam[..., :2] / in_cam[..., 2:]).transpose(2, 0, 1))[seen.present].max()
             if bent.lens.fold(bent.distortion) > 1.1 * widest:
                 yield bent
+        yield guess
     focal = focal_lengths(H, centre)
     if focal is not None and 0.1 * width < min(focal) and max(focal) < 50 * width:
         yield Camera(width, height, *focal, *centre, model=model)
