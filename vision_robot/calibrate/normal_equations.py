@@ -104,7 +104,8 @@ def _fill_rows(J: Float[Array, "views c rows"], state: State, seen: Observations
     arm = rotation @ _on_board(state.warp, seen)  # board points turned, from the board's origin
     in_cam = arm + state.cam_from_board.translation[..., None]
     in_cam = in_cam.transpose(1, 0, 2).reshape(3, -1)
-    if camera.lens.field(in_cam).max(initial=0) == np.inf:
+    # What lies before the camera every lens can see: only the rest is worth asking about.
+    if in_cam[2].min(initial=1) <= 0 and np.isinf(camera.lens.field(in_cam)).any():
         return False
     distorted, lens = camera.lens.jacobian(in_cam, camera.distortion)
     x, y = distorted.reshape(2, views, n)

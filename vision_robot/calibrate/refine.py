@@ -39,11 +39,13 @@ def refine(
     """Minimise the reprojection error over the free shared parameters and all poses.
 
     Ends when the next step would move the estimate by less than `tolerance` of its own
-    standard deviation, all parameters together (damping after Nielsen 1999). Raises
+    standard deviation, up to a hundred parameters together (damping after Nielsen 1999). Raises
     NoConvergence when that has not come about after `max_iterations`.
     """
     equations = normal_equations(state, problem)
     dof = max(problem.degrees_of_freedom, 1)
+    # Thousands of poses share what a hundred parameters are allowed together.
+    allowed = tolerance**2 * max(1.0, (int(problem.free.sum()) + 6 * problem.seen.views) / 100)
     damping, growth = 1e-8, 2.0
     for iteration in range(max_iterations):
         variance = 2 * equations.cost / dof
@@ -51,7 +53,7 @@ def refine(
         if step is not None:
             candidate, predicted = step
             # 2 predicted = step^T H step, the length of the step measured in standard deviations.
-            settled = 2 * predicted <= tolerance**2 * variance or variance <= EXACT_PX**2
+            settled = 2 * predicted <= allowed * variance or variance <= EXACT_PX**2
             if settled and damping < 1e-2:
                 return Refinement(state, equations, iteration)
             trial = normal_equations(candidate, problem)
