@@ -5,7 +5,7 @@ SHELL := /bin/bash
 
 UV := $(shell command -v uv || echo .venv/bin/uv)
 COMPILE := $(UV) pip compile pyproject.toml --universal --python-version 3.11 \
-	--no-emit-index-url --no-header --no-annotate --upgrade --quiet
+	--no-header --no-annotate --upgrade --quiet
 
 setup:  ## .venv with the project, the test tools, ruff and pyright
 	./vr test --version
