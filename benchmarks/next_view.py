@@ -17,9 +17,9 @@ from synthetic import board_points, seen, some_camera, some_views
 from table import markdown, mean_interval, shown
 
 from vision_robot.calibrate import CalibrationResult, Corners, Settings, calibrate
-from vision_robot.calibrate.candidate_views import CandidateViews, candidate_views
-from vision_robot.calibrate.next_view import next_views
-from vision_robot.calibrate.picture import Picture
+from vision_robot.calibrate.judgement.candidate_views import CandidateViews, candidate_views
+from vision_robot.calibrate.judgement.next_view import next_views
+from vision_robot.calibrate.judgement.picture import Picture
 from vision_robot.errors import DegenerateViews, NoConvergence
 from vision_robot.geometry import SE3, Camera
 

@@ -20,10 +20,10 @@ import numpy as np
 
 from vision_robot.calibrate import Corners, Settings, calibrate
 from vision_robot.calibrate.boards.chessboard import Chessboard
-from vision_robot.calibrate.bootstrap import bootstrap
-from vision_robot.calibrate.halves import compare_halves
-from vision_robot.calibrate.held_out import hold_back
-from vision_robot.calibrate.selection import select
+from vision_robot.calibrate.judgement.bootstrap import bootstrap
+from vision_robot.calibrate.judgement.halves import compare_halves
+from vision_robot.calibrate.judgement.held_out import hold_back
+from vision_robot.calibrate.judgement.selection import select
 from vision_robot.errors import DegenerateViews, NoConvergence
 from vision_robot.types import Array, Float, Image
 

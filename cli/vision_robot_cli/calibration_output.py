@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from vision_robot.calibrate import CalibrationResult
-from vision_robot.calibrate.advice import advice
 from vision_robot.calibrate.judgement import Judgement
-from vision_robot.calibrate.selection import Selection
+from vision_robot.calibrate.judgement.advice import advice
+from vision_robot.calibrate.judgement.selection import Selection
 from vision_robot.evaluate.projection import projection_error
 from vision_robot.formats import write_camera
 from vision_robot.geometry import Camera

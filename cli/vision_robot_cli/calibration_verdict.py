@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from vision_robot.calibrate import CalibrationResult, Corners, Settings, calibrate
 from vision_robot.calibrate.circle_bias import calibrate_circles
 from vision_robot.calibrate.judgement import Judgement, judge
-from vision_robot.calibrate.selection import Selection, select
+from vision_robot.calibrate.judgement.selection import Selection, select
 from vision_robot_cli.calibration_input import CalibrationInput
 
 __all__ = ["Verdict", "reached"]

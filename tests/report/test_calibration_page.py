@@ -8,8 +8,8 @@ import pytest
 from tests.report.test_page import Reader
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Corners, Rejected, Settings, calibrate
-from vision_robot.calibrate.advice import advice
 from vision_robot.calibrate.boards import Chessboard
+from vision_robot.calibrate.judgement.advice import advice
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import Camera
 from vision_robot.report.calibration import calibration_page

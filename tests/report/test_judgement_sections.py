@@ -7,7 +7,7 @@ import numpy as np
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Settings, calibrate
 from vision_robot.calibrate.judgement import judge
-from vision_robot.calibrate.selection import Selection
+from vision_robot.calibrate.judgement.selection import Selection
 from vision_robot.report.calibration import calibration_page
 from vision_robot.report.judgement_sections import judgement_sections, selection_section
 from vision_robot.report.page import render_page

@@ -6,8 +6,8 @@ import numpy as np
 
 from vision_robot.calibrate.boards import Board
 from vision_robot.calibrate.judgement import Judgement
+from vision_robot.calibrate.judgement.selection import Selection
 from vision_robot.calibrate.result import CalibrationResult
-from vision_robot.calibrate.selection import Selection
 from vision_robot.geometry import Camera
 from vision_robot.report.calibration_advice import remarks
 from vision_robot.report.calibration_findings import AgainstTruth, Findings, find

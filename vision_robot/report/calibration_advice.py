@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from vision_robot.calibrate.advice import advice_by_topic
+from vision_robot.calibrate.judgement.advice import advice_by_topic
 from vision_robot.report.calibration_findings import Findings
 from vision_robot.report.quantity import compact
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vision_robot.calibrate.advice import outlying_views
-from vision_robot.calibrate.corner_positions import corners_in_cam
-from vision_robot.calibrate.projection_uncertainty import (
+from vision_robot.calibrate.judgement.advice import outlying_views
+from vision_robot.calibrate.judgement.corner_positions import corners_in_cam
+from vision_robot.calibrate.judgement.projection_uncertainty import (
     PictureError,
     expected_error,
     picture_grid,
@@ -15,8 +15,12 @@ from vision_robot.calibrate.projection_uncertainty import (
     projection_sigma,
     worst_sigma,
 )
+from vision_robot.calibrate.judgement.whiteness import (
+    NeighbourCorrelation,
+    neighbour_correlation,
+    normalised_residuals,
+)
 from vision_robot.calibrate.result import CalibrationResult
-from vision_robot.calibrate.whiteness import NeighbourCorrelation, neighbour_correlation, normalised_residuals
 from vision_robot.evaluate import ProjectionError, projection_difference, projection_error
 from vision_robot.geometry import Camera
 from vision_robot.types import Array, Bool, Float

@@ -4,10 +4,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vision_robot.calibrate.error_budget import ErrorBudget
 from vision_robot.calibrate.judgement import Judgement
-from vision_robot.calibrate.next_view import NextViews
-from vision_robot.calibrate.selection import Selection
+from vision_robot.calibrate.judgement.error_budget import ErrorBudget
+from vision_robot.calibrate.judgement.next_view import NextViews
+from vision_robot.calibrate.judgement.selection import Selection
 from vision_robot.geometry import Camera
 from vision_robot.report.figure import draw, view_colours
 from vision_robot.report.page import Figure, Figures, Paragraph, Part, Remarks, Section, Table

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vision_robot.calibrate.projection_uncertainty import picture_grid
+from vision_robot.calibrate.judgement.projection_uncertainty import picture_grid
 from vision_robot.calibrate.result import CalibrationResult
 from vision_robot.geometry import Camera
 from vision_robot.report.calibration_findings import AgainstTruth, Findings

@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vision_robot.calibrate.judgement.whiteness import normalised_residuals
 from vision_robot.calibrate.result import CalibrationResult
-from vision_robot.calibrate.whiteness import normalised_residuals
 from vision_robot.report.calibration_findings import Findings
 from vision_robot.report.figure import ACCENT, FAINT, INK, WARM, WIDTH_IN, draw, segments
 from vision_robot.report.page import Figure

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vision_robot.calibrate.corner_positions import corners_in_cam
+from vision_robot.calibrate.judgement.corner_positions import corners_in_cam
 from vision_robot.calibrate.result import CalibrationResult
 from vision_robot.geometry import Camera
 from vision_robot.report.calibration_findings import Findings

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vision_robot.calibrate.corner_positions import corners_in_cam
+from vision_robot.calibrate.judgement.corner_positions import corners_in_cam
 from vision_robot.calibrate.result import CalibrationResult
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import Camera, skew

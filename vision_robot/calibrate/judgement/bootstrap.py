@@ -22,12 +22,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vision_robot.calibrate.judgement.solution import solution
+from vision_robot.calibrate.judgement.view_blocks import ViewBlocks
 from vision_robot.calibrate.normal_equations import normal_equations
 from vision_robot.calibrate.refine import arrow_solve
 from vision_robot.calibrate.result import CalibrationResult
-from vision_robot.calibrate.solution import solution
 from vision_robot.calibrate.state import State
-from vision_robot.calibrate.view_blocks import ViewBlocks
 from vision_robot.errors import BadParameter, DegenerateViews
 from vision_robot.types import Array, Float
 

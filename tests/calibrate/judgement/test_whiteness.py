@@ -7,7 +7,7 @@ import pytest
 
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Settings, calibrate
-from vision_robot.calibrate.whiteness import neighbour_correlation, neighbour_pairs
+from vision_robot.calibrate.judgement.whiteness import neighbour_correlation, neighbour_pairs
 
 SIZE = (1280, 960)
 

@@ -7,7 +7,7 @@ import pytest
 
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Corners, Settings, calibrate
-from vision_robot.calibrate.held_out import cross_validate, held_out
+from vision_robot.calibrate.judgement.held_out import cross_validate, held_out
 from vision_robot.errors import BadParameter, TooFewViews
 
 SIZE = (1280, 960)

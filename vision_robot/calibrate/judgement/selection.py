@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from vision_robot.calibrate.corners import Corners
-from vision_robot.calibrate.held_out import HeldOut, hold_back
+from vision_robot.calibrate.judgement.held_out import HeldOut, hold_back
 from vision_robot.calibrate.result import CalibrationResult
 from vision_robot.calibrate.settings import Settings
 from vision_robot.calibrate.solve import calibrate

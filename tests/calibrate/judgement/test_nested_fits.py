@@ -5,7 +5,7 @@ import pytest
 
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Settings, calibrate
-from vision_robot.calibrate.nested_fits import NestedFits
+from vision_robot.calibrate.judgement.nested_fits import NestedFits
 
 SIZE = (1280, 960)
 

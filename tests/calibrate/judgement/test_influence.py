@@ -5,8 +5,8 @@ import pytest
 
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Corners, Settings, calibrate
-from vision_robot.calibrate.influence import influence
-from vision_robot.calibrate.picture import Picture
+from vision_robot.calibrate.judgement.influence import influence
+from vision_robot.calibrate.judgement.picture import Picture
 
 SIZE = (1280, 960)
 

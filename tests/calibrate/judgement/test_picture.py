@@ -7,8 +7,8 @@ import pytest
 
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import calibrate
-from vision_robot.calibrate.picture import Picture
-from vision_robot.calibrate.projection_uncertainty import picture_grid, projection_covariance
+from vision_robot.calibrate.judgement.picture import Picture
+from vision_robot.calibrate.judgement.projection_uncertainty import picture_grid, projection_covariance
 from vision_robot.geometry import plane_from_pixels
 from vision_robot.geometry.se3 import SE3, rotation_exp
 

@@ -5,8 +5,8 @@ import pytest
 
 from tests.views import CAMERAS, Views, make_views
 from vision_robot.calibrate import Corners, Settings, calibrate
-from vision_robot.calibrate.error_budget import error_budget
-from vision_robot.calibrate.picture import Picture
+from vision_robot.calibrate.judgement.error_budget import error_budget
+from vision_robot.calibrate.judgement.picture import Picture
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import Camera
 

@@ -6,9 +6,9 @@ import pytest
 from tests.bent import bent
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Settings, calibrate
-from vision_robot.calibrate.bootstrap import bootstrap
-from vision_robot.calibrate.solution import solution
-from vision_robot.calibrate.view_blocks import ViewBlocks
+from vision_robot.calibrate.judgement.bootstrap import bootstrap
+from vision_robot.calibrate.judgement.solution import solution
+from vision_robot.calibrate.judgement.view_blocks import ViewBlocks
 from vision_robot.errors import BadParameter, DegenerateViews
 
 SIZE = (1280, 960)

@@ -5,9 +5,9 @@ import pytest
 
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Corners, Settings, calibrate
-from vision_robot.calibrate.candidate_views import candidate_views
-from vision_robot.calibrate.next_view import next_views
-from vision_robot.calibrate.projection_uncertainty import picture_grid, projection_covariance
+from vision_robot.calibrate.judgement.candidate_views import candidate_views
+from vision_robot.calibrate.judgement.next_view import next_views
+from vision_robot.calibrate.judgement.projection_uncertainty import picture_grid, projection_covariance
 from vision_robot.errors import BadParameter
 
 SIZE = (1280, 960)

@@ -5,8 +5,8 @@ import pytest
 
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Settings, calibrate
-from vision_robot.calibrate.solution import solution
-from vision_robot.calibrate.view_blocks import ViewBlocks
+from vision_robot.calibrate.judgement.solution import solution
+from vision_robot.calibrate.judgement.view_blocks import ViewBlocks
 
 SIZE = (1280, 960)
 VIEWS = 14

@@ -5,13 +5,13 @@ from functools import cached_property
 
 import numpy as np
 
-from vision_robot.calibrate.information import view_information
-from vision_robot.calibrate.picture import Picture
+from vision_robot.calibrate.judgement.information import view_information
+from vision_robot.calibrate.judgement.picture import Picture
+from vision_robot.calibrate.judgement.solution import solution
 from vision_robot.calibrate.problem import Problem
 from vision_robot.calibrate.refine import Refinement, refine, schur_complement
 from vision_robot.calibrate.result import CalibrationResult
 from vision_robot.calibrate.settings import Settings
-from vision_robot.calibrate.solution import solution
 from vision_robot.calibrate.state import State
 from vision_robot.calibrate.warp import HIGHEST_DEGREE, Warp
 from vision_robot.errors import BadParameter, NoConvergence

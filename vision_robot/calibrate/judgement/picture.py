@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vision_robot.calibrate.projection_uncertainty import picture_grid
+from vision_robot.calibrate.judgement.projection_uncertainty import picture_grid
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import Camera, skew
 from vision_robot.types import Array, Bool, Float

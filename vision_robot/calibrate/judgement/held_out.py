@@ -17,17 +17,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from vision_robot.calibrate.corners import Corners
+from vision_robot.calibrate.judgement.solution import solution
+from vision_robot.calibrate.judgement.view_blocks import ViewBlocks
 from vision_robot.calibrate.normal_equations import residuals
 from vision_robot.calibrate.observations import Observations
 from vision_robot.calibrate.problem import Problem
 from vision_robot.calibrate.refine import refine
 from vision_robot.calibrate.result import CalibrationResult
 from vision_robot.calibrate.settings import Settings
-from vision_robot.calibrate.solution import solution
 from vision_robot.calibrate.solve import calibrate
 from vision_robot.calibrate.start import poses_from_bearings
 from vision_robot.calibrate.state import State
-from vision_robot.calibrate.view_blocks import ViewBlocks
 from vision_robot.calibrate.warp import Warp
 from vision_robot.calibrate.weighting import trust
 from vision_robot.errors import BadParameter, NoConvergence, TooFewViews

@@ -5,10 +5,10 @@ import pytest
 
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Settings, calibrate
-from vision_robot.calibrate.information import view_information
+from vision_robot.calibrate.judgement.information import view_information
+from vision_robot.calibrate.judgement.solution import solution
 from vision_robot.calibrate.normal_equations import normal_equations
 from vision_robot.calibrate.refine import schur_complement
-from vision_robot.calibrate.solution import solution
 
 
 @pytest.mark.parametrize("warp", [0, 2])

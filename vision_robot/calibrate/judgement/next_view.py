@@ -13,15 +13,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vision_robot.calibrate.candidate_views import CandidateViews, candidate_views
 from vision_robot.calibrate.corners import Corners
-from vision_robot.calibrate.information import view_information
+from vision_robot.calibrate.judgement.candidate_views import CandidateViews, candidate_views
+from vision_robot.calibrate.judgement.information import view_information
+from vision_robot.calibrate.judgement.picture import Picture
+from vision_robot.calibrate.judgement.solution import solution
 from vision_robot.calibrate.normal_equations import normal_equations
 from vision_robot.calibrate.observations import Observations
-from vision_robot.calibrate.picture import Picture
 from vision_robot.calibrate.refine import schur_complement
 from vision_robot.calibrate.result import CalibrationResult
-from vision_robot.calibrate.solution import solution
 from vision_robot.calibrate.state import State
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3

@@ -7,7 +7,7 @@ import pytest
 
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Corners, Settings, calibrate
-from vision_robot.calibrate.projection_uncertainty import (
+from vision_robot.calibrate.judgement.projection_uncertainty import (
     expected_error,
     picture_grid,
     projection_covariance,

@@ -6,7 +6,7 @@ import pytest
 from tests.bent import bent
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Settings, calibrate
-from vision_robot.calibrate.halves import compare_halves
+from vision_robot.calibrate.judgement.halves import compare_halves
 from vision_robot.errors import BadParameter, TooFewViews
 
 SIZE = (1280, 960)

@@ -6,7 +6,7 @@ import pytest
 from tests.bent import bent
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Corners, Settings
-from vision_robot.calibrate.selection import every_candidate, select
+from vision_robot.calibrate.judgement.selection import every_candidate, select
 from vision_robot.errors import BadParameter, DegenerateViews, NoConvergence, TooFewViews
 
 SIZE = (1280, 960)

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vision_robot.calibrate.picture import Picture
+from vision_robot.calibrate.judgement.picture import Picture
+from vision_robot.calibrate.judgement.solution import solution
+from vision_robot.calibrate.judgement.view_blocks import ViewBlocks
 from vision_robot.calibrate.result import CalibrationResult
-from vision_robot.calibrate.solution import solution
-from vision_robot.calibrate.view_blocks import ViewBlocks
 from vision_robot.types import Array, Float
 
 __all__ = ["Influence", "influence"]

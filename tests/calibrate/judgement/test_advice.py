@@ -8,7 +8,7 @@ import pytest
 
 from tests.views import CAMERAS, make_views
 from vision_robot.calibrate import Corners, Settings, calibrate
-from vision_robot.calibrate.advice import advice, outlying_views
+from vision_robot.calibrate.judgement.advice import advice, outlying_views
 from vision_robot.errors import BadParameter
 
 SIZE = (1280, 960)

@@ -41,8 +41,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vision_robot.calibrate.nested_fits import Fit, NestedFits, inverted
-from vision_robot.calibrate.picture import Picture
+from vision_robot.calibrate.judgement.nested_fits import Fit, NestedFits, inverted
+from vision_robot.calibrate.judgement.picture import Picture
 from vision_robot.calibrate.result import CalibrationResult
 from vision_robot.errors import BadParameter
 from vision_robot.types import Array, Float

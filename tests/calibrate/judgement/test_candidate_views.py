@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.views import CAMERAS, grid_board
-from vision_robot.calibrate.candidate_views import AWAY, candidate_views
+from vision_robot.calibrate.judgement.candidate_views import AWAY, candidate_views
 
 BOARD = grid_board()
 

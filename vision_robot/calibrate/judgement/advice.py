@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from vision_robot.calibrate.corner_positions import corners_in_cam
-from vision_robot.calibrate.picture import Picture
-from vision_robot.calibrate.projection_uncertainty import picture_grid, projection_covariance
+from vision_robot.calibrate.judgement.corner_positions import corners_in_cam
+from vision_robot.calibrate.judgement.picture import Picture
+from vision_robot.calibrate.judgement.projection_uncertainty import picture_grid, projection_covariance
+from vision_robot.calibrate.judgement.whiteness import neighbour_correlation
 from vision_robot.calibrate.result import CalibrationResult
-from vision_robot.calibrate.whiteness import neighbour_correlation
 from vision_robot.errors import BadParameter
 from vision_robot.geometry.camera import AFFINE_NAMES
 from vision_robot.types import Array, Bool, Float

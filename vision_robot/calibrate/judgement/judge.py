@@ -4,12 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from vision_robot.calibrate.bootstrap import Bootstrap, bootstrap
-from vision_robot.calibrate.error_budget import ErrorBudget, error_budget
-from vision_robot.calibrate.halves import Halves, compare_halves
-from vision_robot.calibrate.held_out import HeldOut, hold_back
-from vision_robot.calibrate.influence import Influence, influence
-from vision_robot.calibrate.next_view import NextViews, next_views
+from vision_robot.calibrate.judgement.bootstrap import Bootstrap, bootstrap
+from vision_robot.calibrate.judgement.error_budget import ErrorBudget, error_budget
+from vision_robot.calibrate.judgement.halves import Halves, compare_halves
+from vision_robot.calibrate.judgement.held_out import HeldOut, hold_back
+from vision_robot.calibrate.judgement.influence import Influence, influence
+from vision_robot.calibrate.judgement.next_view import NextViews, next_views
 from vision_robot.calibrate.result import CalibrationResult
 from vision_robot.errors import VisionRobotError
 from vision_robot.types import Array, Float
