@@ -44,6 +44,7 @@ def test_the_model_may_lie_in_the_same_folder(tmp_path):
         ("1 2\n3 four", "line 2 holds 'four'"),
         ("1 nan 3 4", "not finite"),
         ("0 0 1 1", "2 points where the model has 3"),
+        ("5 5 1 1 5 5", "two of its corners lie at the same place"),
     ],
 )
 def test_what_is_wrong_is_said(tmp_path, content, says):

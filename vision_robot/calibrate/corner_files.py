@@ -49,6 +49,8 @@ def read_corner_folder(folder: Path | str, points: int, *, leave_out: Sequence[P
         pixels = _read_pairs(path)
         if len(pixels) != points:
             raise BadCornerFile(path, f"it holds {len(pixels)} points where the model has {points}")
+        if len(np.unique(pixels, axis=0)) < points:
+            raise BadCornerFile(path, "two of its corners lie at the same place")
         views.append(Corners(path.name, np.arange(points), pixels))
     return views
 

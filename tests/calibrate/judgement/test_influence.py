@@ -1,5 +1,7 @@
 """Influence: as complete calibrations without the view find it, and the views to blame are named."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -77,3 +79,14 @@ def test_a_view_that_cannot_be_missed_is_told():
     assert len(found.images) == 3
     assert (found.cook > 0).all()
     assert any("alone" in sentence or "undetermined" in sentence for sentence in found.sentences)
+
+
+def test_pictures_of_two_cameras_are_asked_about():
+    """Ten views of one camera and four of another: too many for outliers, too different for one camera."""
+    first = make_views(CAMERAS["brown5"], 10, seed=1)
+    other = replace(CAMERAS["brown5"], fx=1150.0, fy=1160.0, cx=600.0)
+    second = [replace(view, image=f"other {view.image}") for view in make_views(other, 4, seed=2).corners]
+    mixed = calibrate([*first.corners, *second], first.board, (1280, 960))
+    assert any("one camera" in said for said in influence(mixed, first.board).sentences)
+    alone = calibrate(first.corners, first.board, (1280, 960))
+    assert not any("one camera" in said for said in influence(alone, first.board).sentences)

@@ -26,6 +26,10 @@ SURPRISING = 4.0
 """Shift, over what a right model predicts, from which a view contradicts the others."""
 
 
+SEVERAL = 3
+"""Contradicting views from which the fault is hardly one of single views."""
+
+
 @dataclass(frozen=True)
 class Influence:
     """A row for each view: how the calibration changes when it is left out.
@@ -74,6 +78,11 @@ class Influence:
                     f"{image} contradicts the other views: it pulls {moved / self.expected_px[i]:.1f} times "
                     "as far as noise explains"
                 )
+        if len(self.contradicting) >= SEVERAL:
+            said.append(
+                f"{len(self.contradicting)} views contradict the others: do all pictures come from "
+                "one camera, at one focus and zoom?"
+            )
         return tuple(said) or ("no single view decides much",)
 
     def _named(self, which: Array) -> tuple[str, ...]:
