@@ -52,7 +52,7 @@ def html(result):
 
 def test_it_is_a_page_by_itself_and_small(html):
     reader = Reader(html)
-    assert reader.tags.count("svg") == 12
+    assert reader.tags.count("svg") == 13
     assert reader.tags.count("img") == 12
     assert "http" not in html
     assert "<script" not in html
@@ -90,7 +90,7 @@ def test_the_same_calibration_is_the_same_page(result):
 def test_every_lens_has_its_page(model):
     result = result_of(model, 8)
     reader = Reader(render_page(calibration_page(result, truth=CAMERAS[model])))
-    assert reader.tags.count("svg") == (10 if model == "pinhole" else 12)
+    assert reader.tags.count("svg") == (11 if model == "pinhole" else 13)
 
 
 def test_a_truth_of_another_model_is_compared_by_its_picture_alone():

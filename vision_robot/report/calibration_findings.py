@@ -11,6 +11,7 @@ from vision_robot.calibrate.judgement.projection_uncertainty import (
     PictureError,
     expected_error,
     picture_grid,
+    plane_sigma,
     projection_covariance_at,
     projection_sigma,
     worst_sigma,
@@ -64,6 +65,7 @@ class Findings:
     grid: Float[Array, "h w 2"]
     sigma_at_infinity: Float[Array, "h w"]
     sigma_at_boards: Float[Array, "h w"]
+    sigma_on_plane_mm: Float[Array, "h w"]
     expected_error: PictureError
     truth: AgainstTruth | None
 
@@ -97,6 +99,7 @@ def find(result: CalibrationResult, truth: Camera | None = None) -> Findings:
         grid=grid,
         sigma_at_infinity=projection_sigma(result, grid),
         sigma_at_boards=worst_sigma(at_boards),
+        sigma_on_plane_mm=1000 * plane_sigma(result, grid, float(np.nanmedian(distance))),
         expected_error=expected_error(result),
         truth=None if truth is None else _against(result, truth),
     )

@@ -77,34 +77,29 @@ def lens_figures(findings: Findings) -> tuple[Figure, Figure]:
     )
 
 
-def uncertainty_maps(findings: Findings) -> tuple[Figure, Figure]:
-    """Projection uncertainty over the picture, at infinity and where the boards were."""
+def uncertainty_maps(findings: Findings) -> tuple[Figure, ...]:
+    """Projection uncertainty over the picture: at infinity, where the boards were, and there in mm."""
     camera = findings.result.camera
     height = picture_height_in(camera)
     distance = compact(1000 * findings.board_distance)
 
-    def figure(size: Array, where: str, removed: str) -> Figure:
+    def figure(size: Array, unit: str, of: str, how: str) -> Figure:
         middle = float(size[size.shape[0] // 2, size.shape[1] // 2])
         return Figure(
             draw(lambda canvas: contour_map(canvas, camera, findings.grid, size), height_in=height),
-            alt=f"Contours of the projection uncertainty [px] over the picture, for points {where}",
-            caption=f"Projection uncertainty [px] of points {where}: one sigma in its worst direction, "
-            f"{removed}. "
-            f"{compact(middle, 2)} px in the middle, {compact(float(np.nanmin(size)), 2)} to "
-            f"{compact(float(np.nanmax(size)), 2)} px over the picture.",
+            alt=f"Contours of the uncertainty [{unit}] of {of} over the picture",
+            caption=f"Uncertainty [{unit}] of {of}: one sigma in its worst direction, {how}. "
+            f"{compact(middle, 2)} {unit} in the middle, {compact(float(np.nanmin(size)), 2)} to "
+            f"{compact(float(np.nanmax(size)), 2)} {unit} over the picture.",
         )
 
+    by_boards = "with the camera placed by the boards themselves"
+    turned = "after the rotation that fits best over the whole picture is taken out"
+    plane = f"positions on a plane that faces the camera at {distance} mm"
     return (
-        figure(
-            findings.sigma_at_infinity,
-            "at infinity",
-            "after the rotation that fits best over the whole picture is taken out",
-        ),
-        figure(
-            findings.sigma_at_boards,
-            f"at {distance} mm",
-            "with the camera placed by the boards themselves (their median distance)",
-        ),
+        figure(findings.sigma_at_infinity, "px", "the projection of points at infinity", turned),
+        figure(findings.sigma_at_boards, "px", f"the projection of points at {distance} mm", by_boards),
+        figure(findings.sigma_on_plane_mm, "mm", plane, by_boards),
     )
 
 

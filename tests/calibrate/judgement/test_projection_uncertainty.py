@@ -10,6 +10,7 @@ from vision_robot.calibrate import Corners, Settings, calibrate
 from vision_robot.calibrate.judgement.projection_uncertainty import (
     expected_error,
     picture_grid,
+    plane_sigma,
     projection_covariance,
     projection_covariance_at,
     projection_sigma,
@@ -177,3 +178,18 @@ def test_the_error_over_the_whole_picture_is_foretold_with_its_spread(spread):
     assert inside >= 0.88
     # The interval is not made wide to hold them.
     assert foretold.high_px < 3.2 * foretold.expected_px
+
+
+def test_millimetres_on_a_plane_are_pixels_over_the_focal_length():
+    """Without a lens a pixel covers distance / f of a plane that faces the camera, fx and fy alike."""
+    views = make_views(replace(CAMERAS["pinhole"], fy=1000.0), 10, seed=3)
+    result = calibrate(views.corners, views.board, (1280, 960), Settings(model="pinhole"))
+    pixels = np.array([[[640.0, 480.0], [100.0, 200.0]]])
+    on_plane = plane_sigma(result, pixels, 0.7)
+    rays = result.camera.unproject(pixels)
+    for i in range(2):
+        reach = 0.7 / rays[0, i, 2]
+        in_px = worst_sigma(projection_covariance_at(result, pixels[0, i], reach))
+        assert on_plane[0, i] == pytest.approx(in_px * 0.7 / result.camera.fx, rel=0.01)
+    with pytest.raises(BadParameter, match="distance"):
+        plane_sigma(result, pixels, 0.0)

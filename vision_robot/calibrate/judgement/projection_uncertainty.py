@@ -34,6 +34,7 @@ __all__ = [
     "PictureError",
     "expected_error",
     "picture_grid",
+    "plane_sigma",
     "projection_covariance",
     "projection_covariance_at",
     "projection_sigma",
@@ -84,6 +85,34 @@ def projection_covariance_at(
     camera = result.camera
     fit = _fit(camera, _corners_in_cam(result), moving=slice(0, 6))
     return _carried(result, camera.unproject(pixels) * distance_m, fit)
+
+
+def plane_sigma(
+    result: CalibrationResult, pixels: Float[Array, "h w 2"], distance_m: float
+) -> Float[Array, "h w"]:
+    """One standard deviation, in its worst direction, of positions seen on a plane that faces the camera [m].
+
+    The plane stands at z = `distance_m`; the camera is placed by the boards, as in
+    `projection_covariance_at`. NaN for rays steeper than 70 degrees, where no such plane is of use.
+    """
+    if not (np.isfinite(distance_m) and distance_m > 0):
+        raise BadParameter("distance", distance_m, "positive and finite, in metres")
+    camera = result.camera
+    rays = camera.unproject(pixels)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        points = np.where(rays[..., 2:] > STEEPEST_COSINE, rays / rays[..., 2:] * distance_m, np.nan)
+    flat = points.reshape(-1, 3)
+    known = np.isfinite(flat).all(axis=1)
+    fit = _fit(camera, _corners_in_cam(result), moving=slice(0, 6))
+    in_pixels = _carried(result, flat[known], fit)
+    per_metre = camera.project_jacobian(flat[known])[1][..., :2]
+    on_plane = np.linalg.inv(per_metre)
+    sigma = np.full(len(flat), np.nan)
+    sigma[known] = worst_sigma(on_plane @ in_pixels @ on_plane.transpose(0, 2, 1))
+    return sigma.reshape(points.shape[:-1])
+
+
+STEEPEST_COSINE = float(np.cos(np.radians(70)))
 
 
 def worst_sigma(covariance: Float[Array, "*batch 2 2"]) -> Float[Array, "*batch"]:
