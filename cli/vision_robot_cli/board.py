@@ -5,21 +5,15 @@ from typing import Annotated
 
 import typer
 
-from vision_robot_cli.options import BoardOption, Json
+from vision_robot_cli.options import BoardName, BoardOption, BoardSize, Json, Square
 
 __all__ = ["board"]
 
 
 def board(
-    board: Annotated[
-        str, typer.Option(help="chessboard, charuco, circles, acircles or aprilgrid.")
-    ] = "chessboard",
-    size: Annotated[
-        str, typer.Option(help="Across x down: inner corners; points of circles; squares of charuco; tags.")
-    ] = "9x6",
-    square: Annotated[
-        str, typer.Option(help="Side of a square or pitch of points, with its unit: 25mm, 1in.")
-    ] = "25mm",
+    board: BoardName = "chessboard",
+    size: BoardSize = "9x6",
+    square: Square = "25mm",
     board_option: BoardOption = None,
     out: Annotated[Path, typer.Option("-o", "--out", help="File to write: *.pdf, *.svg or *.png.")] = Path(
         "board.pdf"
@@ -42,8 +36,8 @@ def board(
     """
     from vision_robot.calibrate.boards.paper import on_page
     from vision_robot.calibrate.boards.printing import print_drawing
-    from vision_robot_cli.calibration_input import target as chosen
     from vision_robot_cli.output import emit_json
+    from vision_robot_cli.target import target as chosen
 
     target = chosen(board, size, square, board_option or ())
     drawing, sheet = target.drawing(), "none"

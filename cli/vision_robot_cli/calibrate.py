@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from vision_robot_cli.options import BoardOption, Json, Out, Report, Seed
+from vision_robot_cli.options import BoardName, BoardOption, BoardSize, Json, Out, Report, Seed, Square
 
 __all__ = ["calibrate"]
 
@@ -17,15 +17,9 @@ def calibrate(
             help="Photos, folders, quoted patterns or one video; nothing: a rendered set with truth."
         ),
     ] = None,
-    board: Annotated[
-        str, typer.Option(help="chessboard, charuco, circles, acircles or aprilgrid.")
-    ] = "chessboard",
-    size: Annotated[
-        str, typer.Option(help="Across x down: inner corners; points of circles; squares of charuco; tags.")
-    ] = "9x6",
-    square: Annotated[
-        str, typer.Option(help="Side of a square or pitch of points: 25mm, 1in, 0.025m.")
-    ] = "25mm",
+    board: BoardName = "chessboard",
+    size: BoardSize = "9x6",
+    square: Square = "25mm",
     board_option: BoardOption = None,
     model: Annotated[
         str, typer.Option(help="pinhole, brown5, brown8 or fisheye; auto: by views held out.")
@@ -73,6 +67,7 @@ def calibrate(
     from vision_robot_cli import calibration_input, calibration_output
     from vision_robot_cli.calibration_verdict import reached
     from vision_robot_cli.output import check_limit, emit_json
+    from vision_robot_cli.target import target
 
     candidates = calibration_input.candidates(model, skew, fix or (), prior or (), warp)
     if out:
@@ -83,11 +78,11 @@ def calibrate(
     if corners or model_points:
         given = calibration_input.from_corner_files(corners, model_points, image_size)
     else:
-        target = calibration_input.target(board, size, square, board_option or ())
+        chosen = target(board, size, square, board_option or ())
         given = (
-            calibration_input.from_pictures(images, target)
+            calibration_input.from_pictures(images, chosen)
             if images
-            else calibration_input.rendered(target, views, seed)
+            else calibration_input.rendered(chosen, views, seed)
         )
     verdict = reached(given, candidates, seed)
     if out:

@@ -7,7 +7,7 @@ from time import perf_counter
 from typing import TypeVar
 
 from vision_robot.calibrate import Corners, Rejected, Settings
-from vision_robot.calibrate.boards import Board, board_named
+from vision_robot.calibrate.boards import Board
 from vision_robot.calibrate.circle_bias import DiscBoard
 from vision_robot.calibrate.corner_files import read_corner_folder, read_model_points, size_holding
 from vision_robot.calibrate.detect import detect_boards, seen_size
@@ -18,7 +18,7 @@ from vision_robot.geometry.camera import AFFINE_NAMES
 from vision_robot.images import open_images
 from vision_robot.types import Array, Float, Image
 from vision_robot_cli.output import note, progress, ticking
-from vision_robot_cli.quantities import length_m, whole_pair
+from vision_robot_cli.quantities import whole_pair
 
 __all__ = [
     "CalibrationInput",
@@ -26,7 +26,6 @@ __all__ = [
     "from_pictures",
     "rendered",
     "rendered_folder",
-    "target",
 ]
 
 Result = TypeVar("Result")
@@ -92,20 +91,6 @@ def candidates(model: str, skew: bool, fix: Sequence[str], prior: Sequence[str],
         for one in models
         for degree in degrees
     ]
-
-
-def target(board: str, size: str, square: str, options: Sequence[str] = ()) -> Board:
-    """The options --board, --size, --square and --board-option."""
-    given: dict[str, float | str] = {}
-    for word in options:
-        name, equals, value = word.partition("=")
-        if not equals:
-            raise BadParameter("--board-option", word, "a name and a value, such as dictionary=DICT_4X4_50")
-        try:
-            given[name.strip()] = float(value)
-        except ValueError:
-            given[name.strip()] = value.strip()
-    return board_named(board, whole_pair(size, "--size"), length_m(square, "--square"), **given)
 
 
 def from_corner_files(

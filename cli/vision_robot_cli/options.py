@@ -5,8 +5,19 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["BoardOption", "Json", "Out", "Report", "Seed"]
+__all__ = ["BoardName", "BoardOption", "BoardSize", "Json", "Out", "Report", "Seed", "Square"]
 
+BoardName = Annotated[
+    str, typer.Option("--board", help="chessboard, charuco, circles, acircles or aprilgrid.")
+]
+BoardSize = Annotated[
+    str,
+    typer.Option("--size", help="Across x down: inner corners; points of circles; squares of charuco; tags."),
+]
+Square = Annotated[
+    str,
+    typer.Option("--square", help="Side of a square or pitch of points, with its unit: 25mm, 1in, 0.025m."),
+]
 BoardOption = Annotated[
     list[str] | None,
     typer.Option(
