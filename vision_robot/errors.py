@@ -14,6 +14,8 @@ __all__ = [
     "BadCornerFile",
     "BadInput",
     "BadParameter",
+    "BadTable",
+    "BadVideo",
     "BoardNotFound",
     "DegenerateViews",
     "MissingOpenGL",
@@ -150,6 +152,22 @@ class BadCornerFile(BadInput):
     def __init__(self, path: object, why: str):
         self.path, self.why = str(path), why
         super().__init__(f"{path} cannot be used as corners: {why}")
+
+
+class BadTable(BadInput):
+    """A table in a text file cannot be used."""
+
+    def __init__(self, path: object, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"{path} cannot be used as a table: {why}")
+
+
+class BadVideo(BadInput):
+    """A video cannot be read or written."""
+
+    def __init__(self, path: object, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"{path} cannot be used as a video: {why}")
 
 
 class UnwritableOutput(BadInput):

@@ -1,6 +1,7 @@
 """Rigid transforms, lenses, cameras and the work plane; numpy only."""
 
 from vision_robot.geometry.camera import Camera, pixel_grid
+from vision_robot.geometry.chain import SerialChain
 from vision_robot.geometry.lens import LENSES, Lens, lens_named
 from vision_robot.geometry.plane import pixels_from_plane, plane_from_pixels, plane_homography
 from vision_robot.geometry.se3 import SE3, rotation_exp, rotation_log, skew
@@ -11,6 +12,7 @@ __all__ = [
     "SE3",
     "Camera",
     "Lens",
+    "SerialChain",
     "lens_named",
     "pixel_grid",
     "pixels_from_plane",

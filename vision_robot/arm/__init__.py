@@ -1,0 +1,1 @@
+"""Arms: models from files, inverse kinematics, C for a microcontroller."""

@@ -1,0 +1,117 @@
+"""Videos, read and written one frame at a time."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Self
+
+import cv2
+import numpy as np
+
+from vision_robot.errors import BadParameter, BadVideo
+from vision_robot.files import atomic_path
+from vision_robot.types import Image
+
+__all__ = ["Frame", "Video", "VideoWriter"]
+
+CODECS = {".avi": "MJPG", ".mkv": "FFV1", ".mp4": "mp4v", ".webm": "VP90"}
+"""What each container is written with; FFV1 in .mkv is lossless."""
+
+LIKELY_FPS = (1.0, 1000.0)
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One picture of a video: its number from 0, its time from the first [s], and its pixels."""
+
+    index: int
+    time_s: float
+    image: Image
+
+
+class Video:
+    """The frames of a video file, streamed; iterate over it as often as wanted, each time from the start.
+
+    Times are the file's own stamps, so a variable frame rate is kept; where stamps do not rise,
+    they are replaced by ``index / fps``. Raises BadVideo where the file holds no frame.
+    """
+
+    def __init__(self, path: Path | str):
+        self.path = Path(path)
+        if not self.path.is_file():
+            raise BadVideo(path, "there is no such file")
+        capture = self._open()
+        try:
+            readable, first = capture.read()
+            if not readable:
+                raise BadVideo(path, "no frame of it can be decoded")
+            height, width = first.shape[:2]
+            self.size = (int(width), int(height))
+            fps = float(capture.get(cv2.CAP_PROP_FPS))
+            self.fps = fps if LIKELY_FPS[0] <= fps <= LIKELY_FPS[1] else 25.0
+            count = int(capture.get(cv2.CAP_PROP_FRAME_COUNT))
+            self.frame_count: int | None = count if count > 0 else None
+        finally:
+            capture.release()
+
+    def __iter__(self) -> Iterator[Frame]:
+        capture = self._open()
+        try:
+            index, last = 0, -1.0
+            while True:
+                readable, image = capture.read()
+                if not readable:
+                    return
+                if image.shape[1::-1] != self.size:
+                    size, other = self.size, image.shape[1::-1]
+                    raise BadVideo(
+                        self.path,
+                        f"frame {index} is {other[0]}x{other[1]} px and the first {size[0]}x{size[1]} px",
+                    )
+                time = float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000
+                if not time > last:
+                    time = max(index / self.fps, last + 1e-3 / self.fps)
+                yield Frame(index, time, image)
+                index, last = index + 1, time
+        finally:
+            capture.release()
+
+    def _open(self) -> cv2.VideoCapture:
+        return cv2.VideoCapture(str(self.path))
+
+
+class VideoWriter:
+    """Writes a video that appears at `path` when its with block ends well, and not at all otherwise.
+
+    The suffix chooses the codec (`CODECS`). Raises BadParameter for a suffix nobody can write
+    or frames of another size, BadVideo where this machine's OpenCV lacks the codec.
+    """
+
+    def __init__(self, path: Path | str, size: tuple[int, int], fps: float):
+        self.path, self.size, self.fps = Path(path), size, float(fps)
+        if self.path.suffix.lower() not in CODECS:
+            raise BadParameter("video file", str(path), f"named *{', *'.join(CODECS)}")
+        if not (np.isfinite(self.fps) and self.fps > 0):
+            raise BadParameter("fps", fps, "positive")
+
+    def __enter__(self) -> Self:
+        self._place = atomic_path(self.path)
+        temporary = self._place.__enter__()
+        code = cv2.VideoWriter.fourcc(*CODECS[self.path.suffix.lower()])
+        self._writer = cv2.VideoWriter(str(temporary), code, self.fps, self.size)
+        if not self._writer.isOpened():
+            error = BadVideo(self.path, f"this OpenCV cannot write {self.path.suffix} files")
+            self._place.__exit__(type(error), error, None)
+            raise error
+        return self
+
+    def write(self, image: Image) -> None:
+        """Append a frame, grey or blue-green-red."""
+        if image.shape[1::-1] != self.size:
+            raise BadParameter("frame size", image.shape[1::-1], f"{self.size}, the size of the video")
+        colour = cv2.cvtColor(image, cv2.COLOR_GRAY2BGR) if image.ndim == 2 else image
+        self._writer.write(np.ascontiguousarray(colour))
+
+    def __exit__(self, *exception: object) -> None:
+        self._writer.release()
+        self._place.__exit__(*exception)  # type: ignore[arg-type]
