@@ -54,7 +54,8 @@ class SerialChain:
 
     def within_limits(self, q: Float[Array, "*batch n"], slack: float = 0.0) -> Bool[Array, "*batch"]:
         """Whether every joint lies inside its limits, or past them by no more than `slack`."""
-        return ((q >= self.limits[:, 0] - slack) & (q <= self.limits[:, 1] + slack)).all(axis=-1)
+        inside = (q >= self.limits[:, 0] - slack) & (q <= self.limits[:, 1] + slack)
+        return np.all(inside, axis=-1)
 
     def base_from_wrist(self, q: Float[Array, "*batch n"]) -> SE3:
         """Pose of the wrist at joint values `q`."""
