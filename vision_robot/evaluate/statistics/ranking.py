@@ -60,7 +60,9 @@ def rank_methods(
     p = np.ones((m, m))
     for (a, b), value in zip(pairs, holm(raw), strict=True):
         p[a, b] = p[b, a] = value
-    return Ranking(tuple(methods[i] for i in order), ranks[order], p, _groups(p >= level), int(whole.sum()))
+    return Ranking(
+        tuple(str(methods[int(i)]) for i in order), ranks[order], p, _groups(p >= level), int(whole.sum())
+    )
 
 
 def _groups(alike: Bool[Array, "m m"]) -> tuple[tuple[int, int], ...]:

@@ -60,11 +60,11 @@ def encounters(truth: Tracks, answer: Tracks, similarity: Similarity = by_boxes)
     for name, table in (("truth", truth), ("answer", answer)):
         _check_once(name, table)
     frames = np.union1d(truth.frame, answer.frame)
-    rows = [_rows_by_frame(table, frames) for table in (truth, answer)]
-    ids = [np.searchsorted(table.ids, table.id) for table in (truth, answer)]
+    truth_rows, answer_rows = _rows_by_frame(truth, frames), _rows_by_frame(answer, frames)
+    truth_ids, answer_ids = (np.searchsorted(table.ids, table.id) for table in (truth, answer))
     alike = [
         similarity(truth.rows(a), answer.rows(b)) if len(a) and len(b) else np.zeros((len(a), len(b)))
-        for a, b in zip(*rows, strict=True)
+        for a, b in zip(truth_rows, answer_rows, strict=True)
     ]
     for frame, values in zip(frames, alike, strict=True):
         if not np.isfinite(values).all():
@@ -73,9 +73,11 @@ def encounters(truth: Tracks, answer: Tracks, similarity: Similarity = by_boxes)
         truth,
         answer,
         frames,
-        *rows,
-        *([numbered[part] for part in parts] for numbered, parts in zip(ids, rows, strict=True)),
-        alike,
+        truth_rows,
+        answer_rows,
+        truth_ids=[truth_ids[rows] for rows in truth_rows],
+        answer_ids=[answer_ids[rows] for rows in answer_rows],
+        similarity=alike,
     )
 
 

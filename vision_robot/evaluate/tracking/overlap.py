@@ -8,7 +8,7 @@ __all__ = ["box_overlap", "closeness"]
 
 
 def box_overlap(boxes: Float[Array, "n 4"], others: Float[Array, "m 4"]) -> Float[Array, "n m"]:
-    """Intersection over union of boxes (left, top, width, height), 0 to 1; 0 for empty boxes, NaN for unknown."""
+    """Intersection over union of boxes (left, top, width, height); 0 for empty boxes, NaN for unknown."""
     a, b = boxes[:, None], others[None]
     low = np.maximum(a[..., :2], b[..., :2])
     high = np.minimum(a[..., :2] + a[..., 2:], b[..., :2] + b[..., 2:])
