@@ -109,7 +109,6 @@ def test_a_clear_order_has_a_winner_and_a_tie_has_none():
     tied = rank_methods(["c", "a", "b"], noise + np.array([0.2, 0.9, 0.9]), np.arange(20))
     assert tied.winner is None
     assert (0, 1) in tied.groups
-    seeds = np.arange(20)
     down = rank_methods(
         ["c", "a", "b"], noise + np.array([0.2, 0.9, 0.5]), np.arange(20), higher_is_better=False
     )
