@@ -12,11 +12,13 @@ from typing import Any
 __all__ = [
     "BadCameraFile",
     "BadCornerFile",
+    "BadFrame",
     "BadInput",
     "BadParameter",
     "BadTable",
     "BadVideo",
     "BoardNotFound",
+    "BrokenPlugin",
     "DegenerateViews",
     "MissingOpenGL",
     "MissingPackage",
@@ -186,6 +188,22 @@ class BadVideo(BadInput):
     def __init__(self, path: object, why: str):
         self.path, self.why = str(path), why
         super().__init__(f"{path} cannot be used as a video: {why}")
+
+
+class BadFrame(BadInput):
+    """A frame does not belong into the video it was given for."""
+
+    def __init__(self, index: int, why: str):
+        self.index, self.why = index, why
+        super().__init__(f"frame {index} cannot be used: {why}")
+
+
+class BrokenPlugin(BadInput):
+    """A package names something that cannot be loaded."""
+
+    def __init__(self, name: str, package: str, target: str, why: str):
+        self.name, self.package, self.target, self.why = name, package, target, why
+        super().__init__(f"{name} of package {package} ({target}) cannot be loaded ({why}): mend or remove")
 
 
 class UnwritableOutput(BadInput):
