@@ -26,6 +26,7 @@ __all__ = [
     "NoConvergence",
     "NoImages",
     "NoScheduler",
+    "PeerFailed",
     "TooFewViews",
     "UnreadableImage",
     "UnwritableOutput",
@@ -72,6 +73,14 @@ class MissingPackage(VisionRobotError):
     def __init__(self, package: str, purpose: str):
         self.package, self.purpose = package, purpose
         super().__init__(f"{purpose} needs the package {package}: install it with 'pip install {package}'")
+
+
+class PeerFailed(VisionRobotError):
+    """Another program that was to be measured ended badly."""
+
+    def __init__(self, command: str, why: str):
+        self.command, self.why = command, why
+        super().__init__(f"'{command}' failed: {why}")
 
 
 class BadInput(VisionRobotError):
