@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 __all__ = [
+    "BadArm",
     "BadCameraFile",
     "BadCornerFile",
     "BadInput",
@@ -18,6 +19,7 @@ __all__ = [
     "BadVideo",
     "BoardNotFound",
     "DegenerateViews",
+    "MissingLimits",
     "MissingOpenGL",
     "MixedImageSizes",
     "NoConvergence",
@@ -168,6 +170,23 @@ class BadVideo(BadInput):
     def __init__(self, path: object, why: str):
         self.path, self.why = str(path), why
         super().__init__(f"{path} cannot be used as a video: {why}")
+
+
+class BadArm(BadInput):
+    """A file describes no arm that can be solved."""
+
+    def __init__(self, path: object, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"{path} is not an arm this tool can use: {why}")
+
+
+class MissingLimits(BadArm):
+    """Joints that slide have no limits."""
+
+    def __init__(self, path: object, joints: Sequence[str]):
+        self.joints = tuple(joints)
+        why = f"joint(s) {', '.join(joints)} slide without limits"
+        super().__init__(path, f"{why}: write them into the file or give --limit {joints[0]}=0..0.4m")
 
 
 class UnwritableOutput(BadInput):
