@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 __all__ = [
+    "BadArm",
     "BadCameraFile",
     "BadCornerFile",
     "BadInput",
@@ -21,12 +22,14 @@ __all__ = [
     "ContradictingPoses",
     "DegeneratePoses",
     "DegenerateViews",
+    "MissingLimits",
     "MissingOpenGL",
     "MixedImageSizes",
     "NoConvergence",
     "NoImages",
     "TooFewPoses",
     "TooFewViews",
+    "UnknownStructure",
     "UnreadableImage",
     "UnwritableOutput",
     "VisionRobotError",
@@ -209,6 +212,35 @@ class BadVideo(BadInput):
     def __init__(self, path: object, why: str):
         self.path, self.why = str(path), why
         super().__init__(f"{path} cannot be used as a video: {why}")
+
+
+class BadArm(BadInput):
+    """A file describes no arm that can be solved."""
+
+    def __init__(self, path: object, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"{path} is not an arm this tool can use: {why}")
+
+
+class MissingLimits(BadArm):
+    """Joints that slide have no limits."""
+
+    def __init__(self, path: object, joints: Sequence[str]):
+        self.joints = tuple(joints)
+        why = f"joint(s) {', '.join(joints)} slide without limits"
+        super().__init__(path, f"{why}: write them into the file or give --limit {joints[0]}=0..0.4m")
+
+
+class UnknownStructure(BadInput):
+    """An arm is of no kind whose joints are known in closed form."""
+
+    def __init__(self, joints: Sequence[str], pattern: str, reasons: dict[str, str]):
+        self.joints, self.pattern, self.reasons = tuple(joints), pattern, reasons
+        why = "; ".join(f"not {name}: {reason}" for name, reason in reasons.items())
+        super().__init__(
+            f"no closed form is known for joints {', '.join(joints)} ({pattern}): "
+            f"{why or 'no kind that is known has this order of joints'}; use the numeric solver"
+        )
 
 
 class UnwritableOutput(BadInput):
