@@ -183,8 +183,9 @@ class TooFewPoses(BadInput):
     def __init__(self, usable: int, needed: int, given: int, why: str = ""):
         self.usable, self.needed, self.given, self.why = usable, needed, given, why
         super().__init__(
-            f"{usable} usable pair(s) of pose and picture of {given} given{f' ({why})' if why else ''}: at least "
-            f"{needed} are needed, ten to twenty are good; turn the wrist by 30-90 degrees about different axes"
+            f"{usable} usable pair(s) of pose and picture of {given} given{f' ({why})' if why else ''}: "
+            f"at least {needed} are needed, ten to twenty are good; turn the wrist by 30-90 degrees about "
+            "different axes"
         )
 
 

@@ -113,7 +113,7 @@ class ArmGeometry:
 
 
 def link_jacobian(chain: SerialChain, joints: Float[Array, "views n"]) -> Float[Array, "views 6 m"]:
-    """Turn, then shift of the wrist, both in base axes, per (turn, shift) of each link in its joint's frame."""
+    """Turn, then shift of the wrist in base axes, per (turn, shift) of each link in its joint's frame."""
     moved = chain.base_from_joints(joints)
     wrist = (moved[-1] @ chain.last_from_wrist).translation
     before = SE3.identity(len(joints))

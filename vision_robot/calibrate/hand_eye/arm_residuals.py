@@ -18,7 +18,7 @@ __all__ = ["ArmRows", "arm_residuals", "arm_rows"]
 
 @dataclass(frozen=True)
 class ArmRows:
-    """Residuals (turn, shift) and their derivatives in (w, dt) of both ends, in the arm's own, in each pose."""
+    """Residuals (turn, shift); derivatives in (w, dt) of both ends and the arm's own, and in each pose."""
 
     residual: Float[Array, "views 6"]
     in_shared: Float[Array, "views 6 s"]

@@ -81,7 +81,7 @@ def find_board_poses(
     state = _better_of_two(state, problem)
     if robust:
         keep = explained(state, problem)
-        alive = keep.any(axis=1)
+        alive: Array = np.any(keep, axis=1)
         rejected += _named(views, problem, keep)
         usable[np.flatnonzero(usable)[~alive]] = False
         problem = problem.of(problem.seen.keeping(keep)[alive])

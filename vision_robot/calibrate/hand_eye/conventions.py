@@ -14,14 +14,15 @@ from vision_robot.calibrate.hand_eye.pose_table import LENGTHS, PoseTable, Readi
 from vision_robot.calibrate.hand_eye.rotations import EULER_ORDERS
 from vision_robot.calibrate.hand_eye.setup import Setup
 from vision_robot.calibrate.hand_eye.start import Fit, closed_fit, consistent_fit
+from vision_robot.calibrate.hand_eye.words import degrees, millimetres
 from vision_robot.errors import BadPoseFile, ContradictingPoses
 from vision_robot.geometry import SE3
 
 __all__ = ["CONTRADICTION", "Meaning", "check_meaning", "meanings"]
 
 CONTRADICTION = 2e-3
-"""Typical disagreement (turn [rad] and shift over the board's distance together) below which nothing is asked:
-0.1 degrees, 1 mm at half a metre."""
+"""Typical disagreement (turn [rad], and shift over the board's distance) below which nothing is asked: 0.1
+degrees, 1 mm at half a metre."""
 
 BETTER = 5.0
 """Times a meaning must disagree less to be believed instead of the one given."""
@@ -119,16 +120,14 @@ def check_meaning(table: PoseTable, setup: Setup, cam_from_board: SE3) -> Fit:
     ]
     best, meaning = min(tried, key=lambda pair: pair[0])
     if best * BETTER < fit.typical:
-        reach = float(np.median(np.linalg.norm(cam_from_board.translation, axis=1)))
         how = meaning.words if meaning.words.startswith("as ") else f"as {meaning.words}"
         raise ContradictingPoses(
-            f"read as {table.reading.words} they disagree by {_size(fit, reach)}, read {how} "
+            f"read as {table.reading.words} they disagree by {_size(fit)}, read {how} "
             f"by {best / fit.typical:.1%} of that",
             meaning.mend if meaning.mend.startswith("give") else f"give {meaning.mend}",
         )
     return fit
 
 
-def _size(fit: Fit, reach: float) -> str:  # noqa: ARG001
-    turn, shift = np.degrees(np.median(fit.turn)), 1e3 * np.median(fit.shift_m)
-    return f"{turn:.2g} degrees and {shift:.3g} mm"
+def _size(fit: Fit) -> str:
+    return f"{degrees(float(np.median(fit.turn)))} and {millimetres(float(np.median(fit.shift_m)))}"

@@ -13,15 +13,16 @@ import numpy as np
 
 from vision_robot.calibrate.hand_eye.motions import HALF_TURN, motions
 from vision_robot.calibrate.hand_eye.setup import Setup
+from vision_robot.calibrate.hand_eye.words import degrees, direction
 from vision_robot.errors import DegeneratePoses, TooFewPoses
 from vision_robot.geometry import SE3, SerialChain
 from vision_robot.types import Array, Float
 
-__all__ = ["FEWEST_POSES", "Motion", "check_motion", "direction_in_words", "motion_of", "unmoved_joints"]
+__all__ = ["FEWEST_POSES", "LEAST_TURN", "Motion", "check_motion", "motion_of", "unmoved_joints"]
 
 FEWEST_POSES = 3
 LEAST_TURN = np.radians(1.0)
-"""Root mean square turn that a direction must feel: below it, an error of 0.02 degrees makes 2 % of a lever."""
+"""Root mean square turn that a direction must feel: from here an error of 0.02 degrees is 2 % of a lever."""
 
 NOISY = 10.0
 """Turns of fewer times their own noise have an axis that is noise."""
@@ -35,8 +36,10 @@ STILL, STILL_M = np.radians(2.0), 5e-3
 
 @dataclass(frozen=True)
 class Motion:
-    """How much the motions turn: `felt` [rad] is the root mean square turn that a shift of the camera along each
-    of the rows of `directions` (in the mount's frame) feels, least first.
+    """How much the motions turn.
+
+    `felt` [rad] is the root mean square turn that a shift of the camera along each of the rows of
+    `directions` (in the mount's frame) feels, least first.
     """
 
     felt: Float[Array, "3"]
@@ -111,16 +114,15 @@ def check_motion(
     if motion.felt[2] < least:
         raise DegeneratePoses(
             (f"where the camera sits on the {mount}",),
-            f"all poses are parallel to each other, none turned from another by more than "
-            f"{np.degrees(motion.largest):.2g} degrees{move}",
+            "all poses are parallel to each other, none turned from another by more than "
+            f"{degrees(motion.largest)}{move}",
             "turn the wrist by 30-90 degrees between views, about at least two different axes",
         )
     if motion.felt[0] < least:
-        along = direction_in_words(motion.axis, mount)
+        along = direction(motion.axis, mount)
         raise DegeneratePoses(
             (f"the camera's position along {along}",),
-            f"all motions turn about that one axis, and about others by only "
-            f"{np.degrees(motion.felt[0]):.2g} degrees{move}",
+            f"all motions turn about that one axis, about others by {degrees(float(motion.felt[0]))}{move}",
             f"also turn the wrist by 30-60 degrees about axes across it"
             f"{f', with {idle[0]}' if len(idle) == 1 else ''}",
         )
@@ -128,8 +130,7 @@ def check_motion(
     if signed.felt[0] < least:
         raise DegeneratePoses(
             ("how the camera is turned",),
-            f"but for one axis all motions are half turns (over {np.degrees(HALF_TURN):.0f} degrees), and the axis "
-            "of a half turn has no sign",
+            f"but for one axis all motions are half turns, over {degrees(HALF_TURN)}, whose axis has no sign",
             "add poses that are turned by 30-120 degrees",
         )
     return motion
@@ -143,11 +144,3 @@ def unmoved_joints(chain: SerialChain, joints: Float[Array, "views n"]) -> tuple
         for name, idle, slides in zip(chain.joint_names, still, chain.slides, strict=True)
         if idle and not slides
     )
-
-
-def direction_in_words(axis: Float[Array, "3"], frame: str) -> str:
-    """`the wrist's z axis`, or the direction's components where it is none of the three."""
-    axis = axis * np.sign(axis[int(np.argmax(np.abs(axis)))])
-    if np.abs(axis).max() > np.cos(np.radians(8)):
-        return f"the {frame}'s {'xyz'[int(np.argmax(np.abs(axis)))]} axis"
-    return f"({', '.join(f'{c:.2f}' for c in axis)}) of the {frame}"

@@ -11,6 +11,7 @@ from vision_robot.calibrate.hand_eye.problem import ArmNoise
 from vision_robot.calibrate.hand_eye.reduced import Reduced
 from vision_robot.calibrate.hand_eye.start import disagreement
 from vision_robot.calibrate.hand_eye.state import HandEyeState
+from vision_robot.calibrate.hand_eye.words import degrees, millimetres
 from vision_robot.geometry import SE3
 from vision_robot.types import Array, Bool, Float
 
@@ -38,25 +39,27 @@ class Surprise:
 def explained_views(problem: Reduced, start: Bool[Array, "n"], noise: ArmNoise) -> Bool[Array, "n"]:
     """Which views the noise of the arm explains, from a first guess of them.
 
-    The least likely view is left out, noise and unknowns are found anew, until all are likely; a view that was
-    left out comes back when the rest explains it after all.
+    The least likely view is asked against the noise and the unknowns that all the others tell; it is left
+    out, and so on, until all are likely. A view that was left out comes back when the rest explains it.
     """
     keep = np.array(start, dtype=bool)
     for _ in range(2 * len(keep)):
         noise = estimate_noise(problem.keeping(keep), noise).noise
         found = surprise(problem, keep, noise).chance
         back = ~keep & (found > np.sqrt(CHANCE))
-        worst = int(np.argmin(np.where(keep, found, np.inf)))
         if back.any():
-            new = keep | back
-        elif found[worst] < CHANCE and keep.sum() > FEWEST_KEPT:
-            new = keep.copy()
-            new[worst] = False
-        else:
+            keep = keep | back
+            continue
+        if keep.sum() <= FEWEST_KEPT:
             break
-        if (new == keep).all():
+        without = keep.copy()
+        worst = int(np.argmin(np.where(keep, found, np.inf)))
+        without[worst] = False
+        # The noise must not be told by the view that is asked.
+        others = estimate_noise(problem.keeping(without), noise).noise
+        if surprise(problem, without, others).chance[worst] >= CHANCE:
             break
-        keep = new
+        keep = without
     return keep
 
 
@@ -87,10 +90,10 @@ def reason(
     names: Sequence[str],
 ) -> str:
     """Why a view was left out, in words; `every_pose` are all mount_from_far, `seen` its cam_from_board."""
-    turn, shift = np.degrees(np.linalg.norm(off[:3])), 1e3 * np.linalg.norm(off[3:])
+    turn, shift = float(np.linalg.norm(off[:3])), float(np.linalg.norm(off[3:]))
     said = (
-        f"its pose and its picture disagree by {shift:.2g} mm and {turn:.2g} degrees, the others by "
-        f"{1e3 * noise.shift_m:.2g} mm and {np.degrees(noise.turn):.2g} degrees per axis"
+        f"its pose and its picture disagree by {millimetres(shift)} and {degrees(turn)}, the others by "
+        f"{millimetres(noise.shift_m)} and {degrees(noise.turn)} per axis"
     )
     close_turn = CLOSE * max(noise.turn, 1e-4)
     close_shift = CLOSE * (

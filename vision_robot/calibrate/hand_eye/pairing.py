@@ -44,9 +44,11 @@ def check_pairing(mount_from_far: SE3, cam_from_board: SE3, fit: Fit) -> None:
     lag = lagged(mount_from_far, cam_from_board)
     if lag.typical * BETTER < fit.typical and lag.typical < CONTRADICTION:
         steps = f"{abs(lag.steps):g} step{'s' if abs(lag.steps) != 1 else ''}"
-        late = "the pictures fit the poses" + (" after them" if lag.steps > 0 else " before them")
+        late = "after" if lag.steps > 0 else "before"
+        first = 1 if lag.steps > 0 else 1 + int(np.ceil(-lag.steps))
         raise ContradictingPoses(
-            f"the lists are out of step by {steps} ({late}: picture 1 belongs to pose {1 + lag.steps:g})",
+            f"the lists are out of step by {steps} (the pictures fit the poses {late} them: picture {first} "
+            f"belongs to pose {first + lag.steps:g})",
             "pair each picture with the pose at which it was taken",
             [i + int(lag.steps) if 0 <= i + lag.steps < n else -1 for i in range(n)],
         )

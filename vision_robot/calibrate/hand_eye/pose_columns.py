@@ -24,7 +24,8 @@ EULER = {
     ("w", "p", "r"): ("xyz", "deg"),
     ("e1", "e2", "e3"): ("xyz", "deg"),
 }
-"""Euler angles by the names of their columns: order, and the unit where no name says it (KUKA's A B C, Fanuc's W P R)."""
+"""Euler angles by the names of their columns: order, and the unit where no name says it (A B C is KUKA's,
+W P R Fanuc's)."""
 
 UNNAMED = {
     6: ("x", "y", "z", "rx", "ry", "rz"),
@@ -55,8 +56,8 @@ def columns_of(
         if names is None:
             raise BadPoseFile(
                 path,
-                f"it has {width} numbers a row and no names over them: 6, 7, 8, 12 or 16 can be told apart; put a "
-                "first line with names such as image,x_m,y_m,z_m,qw,qx,qy,qz",
+                f"it has {width} numbers a row and no names over them: 6, 7, 8, 12 or 16 can be told apart; "
+                "put a first line with names such as image,x_m,y_m,z_m,qw,qx,qy,qz",
             )
         header = names
     columns: dict[str, Column] = {}
@@ -102,8 +103,8 @@ def table_of(columns: Mapping[str, Column], rows: Sequence[str], path: Path) -> 
     if not len(shift) and not joints:
         raise BadPoseFile(
             path,
-            f"its columns ({', '.join(columns)}) hold no pose: x, y, z with qw, qx, qy, qz or rx, ry, rz or roll, "
-            "pitch, yaw or r11 .. r33, or joint values, are expected",
+            f"its columns ({', '.join(columns)}) hold no pose: x, y, z with qw, qx, qy, qz or rx, ry, rz or "
+            "roll, pitch, yaw or r11 .. r33, or joint values, are expected",
         )
     if (position or kind) and not len(shift):
         lacking = "x, y, z" if kind else "a rotation (qw.., rx.., roll.. or r11..)"

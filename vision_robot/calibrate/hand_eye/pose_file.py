@@ -1,9 +1,10 @@
 """Files of robot poses: CSV or JSON, one pose a row, meaning told by the columns' names.
 
 Position: ``x y z`` (or tx.., px..). Turn, one of: ``qw qx qy qz``; ``rx ry rz`` (rotation vector);
-``roll pitch yaw``, ``a b c``, ``w p r`` (Euler angles); ``r11 .. r33`` or ``m00 .. m33``. Joint values: ``j1 j2 ..`` or
-the joints' own names. Picture: ``image``. A unit may end a name: x_mm, rx_deg, d1_mm. Without names the count of numbers
-tells: 6 x y z and rotation vector; 7 the same with quaternion; 8 with a time before (TUM); 12 or 16 matrix.
+``roll pitch yaw``, ``a b c``, ``w p r`` (Euler angles); ``r11 .. r33`` or ``m00 .. m33``. Joint values:
+``j1 j2 ..`` or the joints' own names. Picture: ``image``. A unit may end a name: x_mm, rx_deg, d1_mm.
+Without names the count of numbers tells: 6 x y z and rotation vector; 7 the same with quaternion xyzw; 8 with
+a time before (TUM); 12 or 16 matrix.
 """
 
 import csv
@@ -77,17 +78,15 @@ def _from_json(text: str, path: Path) -> tuple[list[str], list[list[str]], list[
     try:
         tree = json.loads(text)
     except (json.JSONDecodeError, RecursionError) as error:
-        raise BadPoseFile(
-            path, f"line {getattr(error, 'lineno', 0)}: {getattr(error, 'msg', error)}"
-        ) from error
+        line, why = getattr(error, "lineno", 1), getattr(error, "msg", "nested too deeply")
+        raise BadPoseFile(path, f"line {line}: {why}") from error
     if isinstance(tree, Mapping):
         tree = next((tree[key] for key in ("poses", "views", "data") if key in tree), None)
     if not isinstance(tree, list):
         raise BadPoseFile(path, "a list of poses is expected, at the top or under `poses`")
     flat = []
-    for i, item in enumerate(tree):
-        if isinstance(item, list):
-            item = {"matrix": item}
+    for i, value in enumerate(tree):
+        item = {"matrix": value} if isinstance(value, list) else value
         if not isinstance(item, Mapping):
             raise BadPoseFile(path, f"pose {i + 1}: an object or a matrix is expected")
         flat.append(dict(_flattened(item)))

@@ -127,15 +127,16 @@ class PoseTable:
         else:
             raise BadPoseFile(
                 self.source,
-                f"it has {len(self.joint_names)} joint columns ({', '.join(self.joint_names)}), the arm's model "
-                f"has {len(wanted)} ({', '.join(wanted)})",
+                f"it has {len(self.joint_names)} joint columns ({', '.join(self.joint_names)}), the arm's "
+                f"model has {len(wanted)} ({', '.join(wanted)})",
             )
         turns = ~chain.slides
         if picked.size and np.abs(picked[:, turns]).max(initial=0) > 4 * np.pi:
             worst = float(np.abs(picked[:, turns]).max())
             raise BadPoseFile(
                 self.source,
-                f"a hinge stands at {worst:.4g} rad: are these degrees? name the columns like {wanted[-1]}_deg",
+                f"a hinge stands at {worst:.4g} rad: are these degrees? name the columns such as "
+                f"{wanted[-1]}_deg",
             )
         if picked.size and np.abs(picked[:, chain.slides]).max(initial=0) > 20:
             worst = float(np.abs(picked[:, chain.slides]).max())

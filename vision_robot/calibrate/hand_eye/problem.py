@@ -30,7 +30,7 @@ class ArmNoise:
 
 @dataclass(frozen=True)
 class HandEyeProblem:
-    """Corners weighed by 1/sigma, the arm's noise, and an optional normal prior on the free camera parameters.
+    """Corners weighed by 1/sigma, the arm's noise, and an optional normal prior on the camera's parameters.
 
     With unit variance throughout, the inverse of the Gauss-Newton matrix is the covariance.
     """

@@ -15,7 +15,7 @@ ANGLES = ("rotvec", "euler")
 """Kinds of rotation whose numbers are angles."""
 
 EULER_ORDERS = ("xyz", "zyx", "ZYX", "XYZ", "ZYZ", "zyz", "ZXZ", "YXZ", "yxz", "ZXY", "XZY", "YZX")
-"""Orders in use, lower case about fixed axes, upper case about the turning ones; first those that robots favour."""
+"""Orders in use, lower case about fixed axes, upper case about the turning ones; first what robots favour."""
 
 QUATERNION_SLACK = 0.02
 MATRIX_SLACK = 0.02

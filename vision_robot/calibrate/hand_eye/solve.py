@@ -1,7 +1,7 @@
 """From corners and the arm's poses to the hand-eye transform."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,13 +17,19 @@ from vision_robot.calibrate.hand_eye.board_poses import BoardViews, find_board_p
 from vision_robot.calibrate.hand_eye.closed_forms import CLOSED_FORMS, closed_form
 from vision_robot.calibrate.hand_eye.conventions import check_meaning
 from vision_robot.calibrate.hand_eye.covariance import hand_eye_covariance
-from vision_robot.calibrate.hand_eye.degeneracy import FEWEST_POSES, check_motion, unmoved_joints
+from vision_robot.calibrate.hand_eye.degeneracy import (
+    FEWEST_POSES,
+    LEAST_TURN,
+    check_motion,
+    motion_of,
+    unmoved_joints,
+)
 from vision_robot.calibrate.hand_eye.identifiability import check_sigma
 from vision_robot.calibrate.hand_eye.outliers import explained_views, reason, surprise
 from vision_robot.calibrate.hand_eye.pairing import check_pairing
 from vision_robot.calibrate.hand_eye.pose_table import PoseTable
 from vision_robot.calibrate.hand_eye.problem import ArmNoise, HandEyeProblem
-from vision_robot.calibrate.hand_eye.reduced import reduced
+from vision_robot.calibrate.hand_eye.reduced import Reduced, reduced
 from vision_robot.calibrate.hand_eye.refine import HandEyeEnd, refine_hand_eye
 from vision_robot.calibrate.hand_eye.result import HandEyeResult
 from vision_robot.calibrate.hand_eye.settings import HandEyeSettings
@@ -32,7 +38,7 @@ from vision_robot.calibrate.hand_eye.start import Fit, consistent_fit
 from vision_robot.calibrate.hand_eye.state import HandEyeState
 from vision_robot.calibrate.result import Rejected
 from vision_robot.calibrate.state import State
-from vision_robot.errors import BadParameter, NoConvergence, TooFewPoses
+from vision_robot.errors import BadParameter, DegeneratePoses, NoConvergence, TooFewPoses
 from vision_robot.geometry import SE3, Camera, SerialChain
 from vision_robot.types import Array, Bool, Float
 
@@ -70,7 +76,7 @@ def calibrate_hand_eye(
         BadParameter: Counts that differ.
         TooFewPoses: Fewer than three usable views.
         DegeneratePoses: The motions leave something open; it is named.
-        ContradictingPoses: The poses mean something else than they are taken for, or belong to other pictures.
+        ContradictingPoses: The poses mean something else than taken for, or belong to other pictures.
         NoConvergence: The descent did not settle.
     """
     settings = settings or HandEyeSettings()
@@ -95,9 +101,16 @@ def calibrate_hand_eye(
     joints = joints[index] if joints is not None else None
     mount_from_far = setup.mount_from_far(given)
     idle = unmoved_joints(arm, joints) if arm is not None and joints is not None else ()
-    motion = check_motion(setup, mount_from_far, given=len(corners), idle=idle)
-    if isinstance(poses, PoseTable) and joints is None:
-        fit = check_meaning(poses.keeping(index.tolist()), setup, views.cam_from_board)
+    table = poses.keeping(index.tolist()) if isinstance(poses, PoseTable) and joints is None else None
+    try:
+        check_motion(setup, mount_from_far, given=len(corners), idle=idle)
+    except DegeneratePoses:
+        # Angles taken for another unit look like no turn at all: the pictures know better.
+        if table is not None and motion_of(views.cam_from_board).felt[0] > LEAST_TURN:
+            check_meaning(table, setup, views.cam_from_board)
+        raise
+    if table is not None:
+        fit = check_meaning(table, setup, views.cam_from_board)
     else:
         fit = consistent_fit(mount_from_far, views.cam_from_board)
     check_pairing(mount_from_far, views.cam_from_board, fit)
@@ -105,7 +118,7 @@ def calibrate_hand_eye(
     everything = _start(setup, fit, views, given, arm, joints, settings)
     problem = _problem(views, settings, fit)
     end, problem, estimate, keep = _settled(everything, problem, settings, fit)
-    names = [corners[i].image for i in index]
+    names = [corners[int(i)].image for i in index]
     late = _why(end.state, everything, keep, problem.noise, names, problem=_problem(views, settings, fit))
     if keep.sum() < FEWEST_POSES:
         raise TooFewPoses(int(keep.sum()), FEWEST_POSES, len(corners), "the others contradict each other")
@@ -125,7 +138,7 @@ def calibrate_hand_eye(
         noise_px=views.noise_px,
         covariance=known,
         motion=motion,
-        corners=tuple(corners[index[i]] for i in kept),
+        corners=tuple(corners[int(index[i])] for i in kept),
         indices=tuple(int(index[i]) for i in kept),
         rejected=(*rejected, *left_out, *late),
         closed_forms={
@@ -166,13 +179,6 @@ def _problem(views: BoardViews, settings: HandEyeSettings, fit: Fit) -> HandEyeP
     return HandEyeProblem(views.problem.freeing(free), noise, camera.parameters, settings.camera.information)
 
 
-@dataclass(frozen=True)
-class _Settled:
-    end: HandEyeEnd
-    problem: HandEyeProblem
-    estimate: NoiseEstimate
-
-
 def _settled(
     everything: HandEyeState, problem: HandEyeProblem, settings: HandEyeSettings, fit: Fit
 ) -> tuple[HandEyeEnd, HandEyeProblem, NoiseEstimate, Bool[Array, "n"]]:
@@ -192,7 +198,7 @@ def _settled(
             break
         state = now.state
         if settings.robust:
-            whole = reduced(_all_views(everything, state), problem)
+            whole = reduced(_with_ends(everything, state), problem)
             new = explained_views(whole, keep, noise)
         else:
             new = keep
@@ -208,7 +214,7 @@ def _settled(
     return end, last.with_noise(estimate.noise), estimate, keep
 
 
-def _noise(problem, start: ArmNoise, settings: HandEyeSettings) -> NoiseEstimate:
+def _noise(problem: Reduced, start: ArmNoise, settings: HandEyeSettings) -> NoiseEstimate:
     if settings.noise is not None:
         # Taken as known: a variance that is known has all the information there is.
         information = component_information(problem.weighed(settings.noise))
@@ -231,10 +237,6 @@ def _with_ends(state: HandEyeState, found: HandEyeState) -> HandEyeState:
     )
 
 
-def _all_views(everything: HandEyeState, found: HandEyeState) -> HandEyeState:
-    return _with_ends(everything, found)
-
-
 def _why(
     state: HandEyeState,
     everything: HandEyeState,
@@ -246,7 +248,7 @@ def _why(
     """The views left out, each with its reason."""
     if keep.all():
         return []
-    whole = _all_views(everything, state)
+    whole = _with_ends(everything, state)
     off = surprise(reduced(whole, problem), keep, noise).off
     every_pose = state.setup.mount_from_far(whole.arm.base_from_wrist)
     seen = everything.pictures.cam_from_board

@@ -23,7 +23,7 @@ MEDIAN_TO_SIGMA = 1 / 1.8
 
 @dataclass(frozen=True)
 class Fit:
-    """A closed form and how the views agree with it: `size` (n,) without unit, turn and shift/reach together."""
+    """A closed form and how the views agree with it; `size` (n,) is turn and shift/reach together."""
 
     mount_from_cam: SE3
     far_from_board: SE3
