@@ -3,12 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from vision_robot.evaluate.conclusion import severity_curve
 from vision_robot.evaluate.statistics import Breakdown, breakdown_point
 from vision_robot.evaluate.sweep import Outcome
 from vision_robot.types import Array, Float
 
-__all__ = ["Dial", "dials_of", "measured"]
+__all__ = ["Dial", "dials_of", "measured", "scene_at"]
 
 
 @dataclass(frozen=True)
@@ -43,8 +45,6 @@ def measured(
     dial: Dial, outcomes: Sequence[Outcome], metric: str, method: str, *, threshold: float = 0.5
 ) -> tuple[Float[Array, "k"], Float[Array, "seeds k"], Breakdown] | None:
     """Severities, scores by seed and breakdown point of one method; None where it took no part."""
-    import numpy as np
-
     severities = np.array(dial.severities)
     scores = severity_curve(outcomes, metric, method, dial.scenes)
     if not len(scores):

@@ -67,6 +67,7 @@ METRICS = {
         _error("flow_aae_deg", "deg", "mean angular error (Barron et al.)", 0.2),
         _error("flow_fl", "", "share of pixels off by over 3 px and 5 %", 0.005),
         _error("corner_error_px", "px", "rms per axis of found corners", 0.002),
+        _share("boards_found", "share of pictures in which the board was found", 0.01),
         _error("projection_error_px", "px", "rms over the picture to the true camera", 0.01),
         _share("ik_success", "share of reachable targets solved", 0.0005),
         _time("ik_solves_per_s", "1/s", "higher", "targets solved a second on one core"),

@@ -5,7 +5,9 @@ import time
 from pathlib import Path
 
 
-def count(folder: str, value: float, *, sleep_s: float = 0.0, fail: bool = False) -> dict[str, float]:
+def count(
+    workspace: Path, folder: str, value: float, *, sleep_s: float = 0.0, fail: bool = False
+) -> dict[str, float]:
     """Leave a trace of every call, then answer."""
     trace = Path(folder) / f"{value}.{os.getpid()}.{time.monotonic_ns()}"
     trace.touch()

@@ -7,6 +7,7 @@ import resource
 import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -20,9 +21,10 @@ __all__ = ["Cell", "Outcome", "measure"]
 class Cell:
     """One method on one scene with one seed: a pure function of what stands here.
 
-    `work` names it as "module:function"; it takes `parameters` (all that JSON can hold) by name and
-    returns figures by the names of metrics. The key is a hash of all of it and the version, so that a
-    result is found again by what it is a result of.
+    `work` names it as "module:function"; it takes `parameters` (all that JSON can hold) by name, a folder
+    `workspace` where what several cells need may be kept, and returns figures by the names of metrics.
+    The key is a hash of all of it (but the folder) and the version, so that a result is found again by
+    what it is a result of.
     """
 
     suite: str
@@ -62,7 +64,7 @@ class Outcome:
     """Of the process so far, whatever it did before this cell."""
 
 
-def measure(cell: Cell) -> Outcome:
+def measure(cell: Cell, workspace: Path) -> Outcome:
     """Do the work; an error becomes an outcome with its reason, since a method that fails is a result too."""
     start = perf_counter()
     figures: Mapping[str, float] = {}
@@ -70,7 +72,9 @@ def measure(cell: Cell) -> Outcome:
     try:
         module, name = cell.work.split(":")
         work = getattr(importlib.import_module(module), name)
-        figures = {metric: float(value) for metric, value in work(**cell.parameters).items()}
+        figures = {
+            metric: float(value) for metric, value in work(workspace=workspace, **cell.parameters).items()
+        }
     except Exception as error:
         failure = f"{type(error).__name__}: {error}"
     return Outcome(cell, figures, failure, perf_counter() - start, _peak_memory())

@@ -1,6 +1,7 @@
 """Running a sweep: what is known is not measured again, what measures time runs alone."""
 
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 
 from vision_robot.errors import BadParameter, MissingPackage, NoScheduler
 from vision_robot.evaluate.sweep.cell import Cell, Outcome, measure
@@ -31,8 +32,10 @@ def run_sweep(
     Cells run in `workers` processes (joblib), or on the Dask cluster whose `scheduler` is named
     (``tcp://host:port``). Cells that must be alone follow, one after the other, in this process's
     machine, when nothing else runs. Each outcome is kept as soon as it is there, so that an interrupted
-    sweep loses only what was under way. Raises NoScheduler where no cluster answers.
+    sweep loses only what was under way. The cells' `workspace` lies beside the outcomes. Raises NoScheduler
+    where no cluster answers.
     """
+    workspace = store.folder / "workspace"
     if workers < 1:
         raise BadParameter("workers", workers, "a whole number from 1 on")
     wanted = {cell.key: cell for cell in cells}
@@ -40,10 +43,12 @@ def run_sweep(
     missing = [cell for key, cell in wanted.items() if key not in known]
     together = [cell for cell in missing if not cell.alone]
     progress(len(known), len(wanted))
-    for batch in (
-        _on_cluster(together, scheduler) if scheduler else _in_processes(together, workers),
-        _in_processes([cell for cell in missing if cell.alone], 1),
-    ):
+    alone = _in_processes([cell for cell in missing if cell.alone], 1, workspace)
+    if scheduler:
+        parallel = _on_cluster(together, scheduler, workspace)
+    else:
+        parallel = _in_processes(together, workers, workspace)
+    for batch in (parallel, alone):
         for outcome in batch:
             store.keep(outcome)
             known[outcome.cell.key] = outcome
@@ -51,19 +56,19 @@ def run_sweep(
     return [known[cell.key] for cell in cells]
 
 
-def _in_processes(cells: Sequence[Cell], workers: int) -> Iterator[Outcome]:
+def _in_processes(cells: Sequence[Cell], workers: int, workspace: Path) -> Iterator[Outcome]:
     if workers == 1 or len(cells) < 2:
-        yield from map(measure, cells)
+        yield from (measure(cell, workspace) for cell in cells)
         return
     from joblib import Parallel, delayed
 
     run = Parallel(n_jobs=workers, backend="loky", return_as="generator_unordered")
-    for outcome in run(delayed(measure)(cell) for cell in cells):
+    for outcome in run(delayed(measure)(cell, workspace) for cell in cells):
         assert isinstance(outcome, Outcome), "measure returns nothing else"
         yield outcome
 
 
-def _on_cluster(cells: Sequence[Cell], scheduler: str) -> Iterator[Outcome]:
+def _on_cluster(cells: Sequence[Cell], scheduler: str, workspace: Path) -> Iterator[Outcome]:
     if not cells:
         return
     try:
@@ -76,7 +81,8 @@ def _on_cluster(cells: Sequence[Cell], scheduler: str) -> Iterator[Outcome]:
         raise NoScheduler(scheduler, str(error)) from error
     with client:
         # Pure: a cell lost with its worker is measured anew by another, and counted once.
-        futures = client.map(measure, cells, key=[f"vr-{cell.key}" for cell in cells], retries=3)
+        keys = [f"vr-{cell.key}" for cell in cells]
+        futures = client.map(measure, cells, workspace=workspace, key=keys, retries=3)
         for future in as_completed(futures):
             yield future.result()
             future.release()

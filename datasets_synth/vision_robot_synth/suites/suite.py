@@ -1,0 +1,74 @@
+"""What a suite is, and which there are."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+
+from vision_robot.errors import BadParameter
+from vision_robot.evaluate.sweep import Cell
+
+__all__ = ["SUITES", "Plan", "Suite", "suite_named"]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How much of a suite is run; empty means all, None the suite's own choice."""
+
+    scenes: tuple[str, ...] = ()
+    methods: tuple[str, ...] = ()
+    seeds: int = 3
+    first_seed: int = 0
+    frames: int | None = None
+    size: tuple[int, int] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("seeds", "frames"):
+            value = getattr(self, name)
+            if value is not None and value < 1:
+                raise BadParameter(name, value, "a whole number from 1 on")
+        if self.first_seed < 0:
+            raise BadParameter("seed", self.first_seed, "zero or a positive whole number")
+
+    @property
+    def seed_range(self) -> range:
+        """The seeds."""
+        return range(self.first_seed, self.first_seed + self.seeds)
+
+
+@dataclass(frozen=True)
+class Suite:
+    """Cells for a plan, and what its page ranks by."""
+
+    name: str
+    scenes: tuple[str, ...]
+    methods: tuple[str, ...]
+    metric: str
+    """Ranks methods."""
+    threshold: float
+    """Of `metric`, under which a method counts as broken on a dial."""
+    cells: Callable[[Plan], Sequence[Cell]]
+
+    def chosen(self, plan: Plan) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """Scenes and methods of a plan. Raises BadParameter for names the suite lacks, listing its own."""
+        for what, asked, known in (
+            ("scene", plan.scenes, self.scenes),
+            ("method", plan.methods, self.methods),
+        ):
+            for name in asked:
+                if name not in known:
+                    raise BadParameter(f"{what} of suite {self.name}", name, f"one of {', '.join(known)}")
+        return plan.scenes or self.scenes, plan.methods or self.methods
+
+
+SUITES = {
+    "calibration": "vision_robot_synth.suites.calibration:SUITE",
+}
+"""Name -> where the suite is."""
+
+
+def suite_named(name: str) -> Suite:
+    """The suite of that name. Raises BadParameter, listing the known."""
+    if name not in SUITES:
+        raise BadParameter("suite", name, f"one of {', '.join(SUITES)}")
+    module, attribute = SUITES[name].split(":")
+    return getattr(import_module(module), attribute)
