@@ -258,6 +258,8 @@ class BrokenPlugin(BadInput):
     def __init__(self, name: str, package: str, target: str, why: str):
         self.name, self.package, self.target, self.why = name, package, target, why
         super().__init__(f"{name} of package {package} ({target}) cannot be loaded ({why}): mend or remove")
+
+
 class BadArm(BadInput):
     """A file describes no arm that can be solved."""
 

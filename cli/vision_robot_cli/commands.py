@@ -34,6 +34,10 @@ EXTRINSICS: dict[str, Command] = {
 }
 
 COMMANDS: dict[str, Command | Group] = {
+    "benchmark": Command(
+        "vision_robot_cli.benchmark:benchmark",
+        "Scenes x methods x seeds -> scores with confidence intervals, ours beside the peers.",
+    ),
     "board": Command(
         "vision_robot_cli.board:board",
         "Write a printable calibration target to scale: PDF, SVG or PNG.",

@@ -1,7 +1,7 @@
 """What a benchmark shows, in words that are never stronger than its numbers."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,7 +30,7 @@ class Comparison:
     """Corrected for all pairs of this metric and scene (Holm)."""
     equivalent: bool
     seeds_needed: int | None
-    """Seeds at which a difference that matters would show, for pairs that are neither."""
+    """Seeds at which a difference as large as this one, if it is real and matters, would show."""
 
     @property
     def verdict(self) -> str:
@@ -60,16 +60,16 @@ def compare_methods(
                 ours, theirs = theirs, ours
             zone = metric.zone_at(float(np.abs(ours).mean()))
             test = compare_pairs(ours, theirs, shared, zone=zone)
-            needed = seeds_needed(ours - theirs, smallest=zone)
+            needed = seeds_needed(ours - theirs, smallest=max(zone, abs(test.difference.value)))
             found.append(
                 Comparison(metric, scene, first, second, test.difference, test.p, test.equivalent, needed)
             )
-    corrected = holm([one.p for one in found])
+    # With k seeds no sign-flip test gives less than 2^(1-k), and Holm multiplies it by the pairs.
+    fewest = int(np.ceil(1 + np.log2(max(len(found), 1) / LEVEL)))
     return [
-        Comparison(one.metric, one.scene, one.better, one.worse, one.difference, float(p), one.equivalent,
-                   one.seeds_needed)
-        for one, p in zip(found, corrected, strict=True)
-    ]  # fmt: skip
+        replace(one, p=float(p), seeds_needed=max(one.seeds_needed, fewest) if one.seeds_needed else None)
+        for one, p in zip(found, holm([one.p for one in found]), strict=True)
+    ]
 
 
 def _table(outcomes: Iterable[Outcome], metric: str) -> dict[str, dict[int, float]]:

@@ -16,7 +16,7 @@ class Plan:
 
     scenes: tuple[str, ...] = ()
     methods: tuple[str, ...] = ()
-    seeds: int = 3
+    seeds: int = 10
     first_seed: int = 0
     frames: int | None = None
     size: tuple[int, int] | None = None

@@ -1,0 +1,69 @@
+"""`vr benchmark`: suites of scenes, methods and seeds; scores with confidence intervals."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from vision_robot_cli.options import Json, Report, Seed
+
+__all__ = ["benchmark"]
+
+
+def benchmark(
+    suite: Annotated[str, typer.Argument(help="calibration, trackers, flow, ik, grasp or all.")] = "all",
+    scenes: Annotated[
+        list[str] | None, typer.Option("--scene", help="Only this scene. May be repeated.")
+    ] = None,
+    methods: Annotated[
+        list[str] | None, typer.Option("--method", help="Only this method. May be repeated.")
+    ] = None,
+    seeds: Annotated[int, typer.Option(help="Seeds of every scene; fewer than 8 settle little.")] = 10,
+    frames: Annotated[int | None, typer.Option(help="Frames of every video; else the suite's own.")] = None,
+    size: Annotated[str | None, typer.Option(help="Size of the pictures, such as 640x480.")] = None,
+    workers: Annotated[int, typer.Option(help="Processes on this machine.")] = 1,
+    scheduler: Annotated[
+        str | None, typer.Option(help="A Dask cluster to run on instead: tcp://host:port.")
+    ] = None,
+    baseline: Annotated[
+        Path | None,
+        typer.Option(help="An older run's --json; exit with 3 where this is worse beyond noise."),
+    ] = None,
+    out: Annotated[
+        Path, typer.Option("-o", "--out", help="Folder of results, where a run that was cut short goes on.")
+    ] = Path("benchmark"),
+    report: Report = None,
+    seed: Seed = 0,
+    json: Json = False,
+) -> None:
+    """Measure methods against the truth, and say no more than the seeds allow.
+
+    Example: vr benchmark calibration --seeds 5 --workers 2 --report calibration.html
+    """
+    from vision_robot.evaluate.score import read_scores
+    from vision_robot.files import check_place
+    from vision_robot_cli import benchmark_output
+    from vision_robot_cli.benchmark_run import run_suites
+    from vision_robot_cli.output import emit_json
+    from vision_robot_cli.quantities import whole_pair
+    from vision_robot_synth.suites import Plan
+
+    before = read_scores(baseline) if baseline else []
+    if report:
+        check_place(report)
+    plan = Plan(
+        tuple(scenes or ()),
+        tuple(methods or ()),
+        seeds,
+        seed,
+        frames,
+        whole_pair(size, "--size") if size else None,
+    )
+    runs = run_suites(suite, plan, out, workers=workers, scheduler=scheduler)
+    if report:
+        benchmark_output.write_reports(runs, report, seed)
+    if json:
+        emit_json("benchmark", benchmark_output.as_json(runs))
+    else:
+        print(benchmark_output.as_text(runs))
+    benchmark_output.check_baseline(runs, before)

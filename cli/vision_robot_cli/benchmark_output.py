@@ -1,0 +1,95 @@
+"""How `vr benchmark` shows its scores: text, JSON, pages, and against an older run."""
+
+import shlex
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from vision_robot.evaluate.baseline import regressions
+from vision_robot.evaluate.conclusion import compare_methods, sentence
+from vision_robot.evaluate.score import Score, failures, scores
+from vision_robot_cli.benchmark_run import SuiteRun
+from vision_robot_cli.output import LimitMissed, note
+
+__all__ = ["as_json", "as_text", "check_baseline", "write_reports"]
+
+
+def as_json(runs: Sequence[SuiteRun]) -> dict[str, Any]:
+    """The object of `vr benchmark --json`."""
+    return {
+        "scores": [asdict(score) for score in _all_scores(runs)],
+        "failures": [asdict(one) for run in runs for one in failures(run.outcomes)],
+        "conclusions": [text for run in runs for text in _conclusions(run)],
+    }
+
+
+def as_text(runs: Sequence[SuiteRun]) -> str:
+    """Scores by suite, scene and metric, then what may be concluded."""
+    lines: list[str] = []
+    for run in runs:
+        lines.append(run.suite.name)
+        last = ("", "")
+        for score in sorted(scores(run.outcomes), key=lambda one: (one.scene, one.metric)):
+            if (score.scene, score.metric) != last:
+                unit = f" [{score.unit}]" if score.unit else ""
+                lines.append(f"  {score.scene}: {score.metric}{unit}, {score.better} is better")
+                last = (score.scene, score.metric)
+            lines.append(f"    {score.method:<22} {_interval(score)}")
+        lines += [f"  failed: {one.scene}, {one.method}, seed {one.seed}: {one.reason}"
+                  for one in failures(run.outcomes)]  # fmt: skip
+        lines += [f"  {text}" for text in _conclusions(run)]
+    return "\n".join(lines)
+
+
+def write_reports(runs: Sequence[SuiteRun], path: Path, seed: int) -> None:
+    """One page a suite: at `path`, or for several suites beside it with the suite's name."""
+    from vision_robot.report.benchmark import benchmark_page
+    from vision_robot.report.page import write_page
+
+    command = shlex.join(["vr", *sys.argv[1:]])
+    for run in runs:
+        place = path if len(runs) == 1 else path.with_stem(f"{path.stem}-{run.suite.name}")
+        page = benchmark_page(
+            run.suite.name,
+            run.outcomes,
+            metric=run.suite.metric,
+            threshold=run.suite.threshold,
+            command=command,
+            seed=seed,
+        )
+        write_page(page, place)
+
+
+def check_baseline(runs: Sequence[SuiteRun], before: Sequence[Score]) -> None:
+    """Raise LimitMissed where a score is worse than the older run's beyond noise; all of them are noted."""
+    worse = regressions(_all_scores(runs), before)
+    for one in worse:
+        now = one.after
+        note(
+            f"worse: {now.suite}, {now.scene}, {now.method}: {now.metric} {one.before.value:.4g} -> "
+            f"{now.value:.4g} (noise {one.noise:.2g})"
+        )
+    if worse:
+        first = worse[0].after
+        name = f"{first.metric} of {first.method} on {first.scene}"
+        raise LimitMissed(name, first.value, worse[0].before.value, first.unit)
+
+
+def _all_scores(runs: Sequence[SuiteRun]) -> list[Score]:
+    return [score for run in runs for score in scores(run.outcomes)]
+
+
+def _conclusions(run: SuiteRun) -> list[str]:
+    """All pairs of methods on every scene by the suite's metric."""
+    scenes = dict.fromkeys(outcome.cell.scene for outcome in run.outcomes)
+    return [
+        sentence(pair) for scene in scenes for pair in compare_methods(run.outcomes, run.suite.metric, scene)
+    ]
+
+
+def _interval(score: Score) -> str:
+    if score.low != score.low:
+        return f"{score.value:.4g}"
+    return f"{score.value:.4g} ({score.low:.4g} to {score.high:.4g}, n = {score.n})"

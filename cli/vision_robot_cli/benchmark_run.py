@@ -1,0 +1,41 @@
+"""Running the suites that `vr benchmark` names."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from vision_robot.errors import BadParameter
+from vision_robot.evaluate.sweep import Outcome, Store, run_sweep
+from vision_robot.files import check_place
+from vision_robot_cli.output import note, ticking
+from vision_robot_synth.suites import SUITES, Plan, Suite, suite_named
+
+__all__ = ["SuiteRun", "run_suites"]
+
+ALL = "all"
+
+
+@dataclass(frozen=True)
+class SuiteRun:
+    """A suite and what came of its cells."""
+
+    suite: Suite
+    outcomes: Sequence[Outcome]
+
+
+def run_suites(name: str, plan: Plan, folder: Path, *, workers: int, scheduler: str | None) -> list[SuiteRun]:
+    """One suite, or all of them in the registry's order, results kept in `folder`."""
+    if name == ALL and (plan.scenes or plan.methods):
+        raise BadParameter("suite", name, f"one of {', '.join(SUITES)} where --scene or --method is given")
+    suites = [suite_named(one) for one in (SUITES if name == ALL else [name])]
+    check_place(folder / "results")
+    store, runs = Store(folder), []
+    for suite in suites:
+        cells = suite.cells(plan)
+        known = sum(store.find(cell) is not None for cell in cells)
+        if known:
+            note(f"{suite.name}: {known} of {len(cells)} cells are known already, in {folder}")
+        with ticking(suite.name) as tick:
+            outcomes = run_sweep(cells, store, workers=workers, scheduler=scheduler, progress=tick)
+        runs.append(SuiteRun(suite, outcomes))
+    return runs
