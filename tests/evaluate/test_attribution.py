@@ -1,5 +1,7 @@
 """Attribution of an error to stages: the laws that define Shapley's value, and cases by hand."""
 
+from collections.abc import Mapping
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -11,7 +13,7 @@ from vision_robot.evaluate.attribution import attribute, subsets
 STAGES = ("calibration", "tracking", "plane", "ik", "control")
 
 
-def errors_of(costs: dict[str, float]):
+def errors_of(costs: Mapping[str, float]) -> dict[frozenset[str], float]:
     """Errors that simply add."""
     return {mended: sum(costs[s] for s in STAGES if s not in mended) for mended in subsets(STAGES)}
 
@@ -50,7 +52,7 @@ def test_equals_get_equal_shares():
 
 
 def test_a_missing_run_is_named():
-    error = errors_of(dict.fromkeys(STAGES, 1.0))
+    error = errors_of(dict.fromkeys(map(str, STAGES), 1.0))
     del error[frozenset({"plane"})]
     with pytest.raises(BadParameter, match="plane"):
         attribute(STAGES, error)
