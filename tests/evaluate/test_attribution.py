@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from vision_robot.errors import BadParameter
 from vision_robot.evaluate.attribution import attribute, subsets
 
-STAGES = ("calibration", "tracking", "plane", "ik", "control")
+STAGES: tuple[str, ...] = ("calibration", "tracking", "plane", "ik", "control")
 
 
 def errors_of(costs: Mapping[str, float]) -> dict[frozenset[str], float]:
@@ -52,7 +52,7 @@ def test_equals_get_equal_shares():
 
 
 def test_a_missing_run_is_named():
-    error = errors_of(dict.fromkeys(map(str, STAGES), 1.0))
+    error = errors_of(dict.fromkeys(STAGES, 1.0))
     del error[frozenset({"plane"})]
     with pytest.raises(BadParameter, match="plane"):
         attribute(STAGES, error)
