@@ -253,6 +253,6 @@ def _why(
     every_pose = state.setup.mount_from_far(whole.arm.base_from_wrist)
     seen = everything.pictures.cam_from_board
     return [
-        Rejected(names[i], reason(int(i), state, every_pose, seen[int(i)], noise, off[i], names))
+        Rejected(names[int(i)], reason(int(i), state, every_pose, seen[int(i)], noise, off[i], names))
         for i in np.flatnonzero(~keep)
     ]
