@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from vision_robot.calibrate.hand_eye.result import HandEyeResult
-from vision_robot.geometry import SE3, SerialChain, rotation_exp
-from vision_robot.types import Array, Float
+from vision_robot.geometry import SE3, Camera, SerialChain, rotation_exp
+from vision_robot.types import Array, Bool, Float
 
 __all__ = ["CandidatePoses", "candidate_poses", "whole_board_seen"]
 
@@ -39,7 +39,7 @@ def candidate_poses(result: HandEyeResult, arm: SerialChain | None, *, seed: int
     rng = np.random.default_rng([seed, 17])
     joints = None
     if arm is not None:
-        joints = rng.uniform(*arm.limits.T, (DRAWN, len(arm)))
+        joints = rng.uniform(arm.limits[:, 0], arm.limits[:, 1], (DRAWN, len(arm)))
         poses = arm.base_from_wrist(joints)
     else:
         poses = _about(result, rng)
@@ -53,7 +53,9 @@ def candidate_poses(result: HandEyeResult, arm: SerialChain | None, *, seed: int
     )
 
 
-def whole_board_seen(camera, cam_from_board: SE3, points: Float[Array, "n 3"]):
+def whole_board_seen(
+    camera: Camera, cam_from_board: SE3, points: Float[Array, "n 3"]
+) -> tuple[Float[Array, "k n 2"], Bool[Array, "k"]]:
     """Pixels of all points and whether the board is wholly seen, large enough and not too slanted."""
     in_cam = cam_from_board.apply(points)
     pixels = np.full((*in_cam.shape[:-1], 2), np.nan)

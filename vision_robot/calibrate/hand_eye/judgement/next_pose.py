@@ -5,7 +5,7 @@ before it is taken: the covariance falls to ``C - C H^T (V + H C H^T)^-1 H C``. 
 point before the camera lands in the frame the camera is mounted on, ``tr(J C J^T)``: A-optimal design.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -74,9 +74,8 @@ def next_poses(
         arm = result.geometry.chain
     candidates = candidates or candidate_poses(result, arm, seed=seed)
     if not len(candidates):
-        raise BadParameter(
-            "next pose", "none found", "one in which the arm's limits let the camera see the board"
-        )
+        allowed = "one in which the arm's limits let the camera see the whole board"
+        raise BadParameter("next pose", "none found", allowed)
     H, V = _information(result, candidates)
     C = result.reduced.weighed(result.noise.noise).covariance
     J = np.zeros((3, len(C)))
@@ -129,23 +128,16 @@ def _information(
         ids=np.broadcast_to(np.arange(n), (k, n)),
         sigma_px=np.full((k, n), 1 / weight),
     )
-    asked = reduced(state, _asking(result, views))
+    asked = reduced(state, replace(result.problem, pictures=result.problem.pictures.of(views)))
     return asked.design, asked.by_pictures + np.diag(np.repeat(result.noise.noise.variances, 3))
-
-
-def _asking(result: HandEyeResult, views: Observations):
-    from dataclasses import replace
-
-    return replace(result.problem, pictures=result.problem.pictures.of(views))
 
 
 def _after(C: Array, H: Array, V: Array, J: Array) -> Float[Array, "k"]:
     """Error of the point [m] with each candidate added alone."""
     gain = C @ np.swapaxes(H, 1, 2)  # k, s, 6
     moved = J @ gain
-    less = np.einsum(
-        "kij,kij->k", moved, np.swapaxes(np.linalg.solve(V + H @ gain, np.swapaxes(moved, 1, 2)), 1, 2)
-    )
+    solved = np.linalg.solve(V + H @ gain, np.swapaxes(moved, 1, 2))
+    less = np.einsum("kij,kji->k", moved, solved)
     return np.sqrt(np.maximum(np.trace(J @ C @ J.T) - less, 0.0))
 
 
