@@ -69,7 +69,7 @@ def columns_of(
     """Columns by their plain names; picture names that stand first in a file without header are found."""
     width = len(cells[0])
     if header is None:
-        named = width - 1 in UNNAMED and not _number(cells[0][0])
+        named = width - 1 in UNNAMED and _number(cells[0][0]) is None
         names = ("image", *UNNAMED[width - 1]) if named else UNNAMED.get(width)
         if names is None:
             raise BadPoseFile(
