@@ -204,7 +204,8 @@ def paired(table: PoseTable, names: Sequence[str]) -> list[int | None]:
         if len(table) != len(names):
             raise BadPoseFile(
                 table.source,
-                f"it holds {len(table)} poses and there are {len(names)} pictures: give one pose a picture in "
+                f"it holds {len(table)} poses and there are {len(names)} pictures: give one pose a picture "
+                "in "
                 "the same order, or name the pictures in a column called image",
             )
         return list(range(len(table)))
