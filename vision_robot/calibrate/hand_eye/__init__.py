@@ -3,12 +3,11 @@
 from vision_robot.calibrate.hand_eye.arm import GeometryTolerance
 from vision_robot.calibrate.hand_eye.problem import ArmNoise
 from vision_robot.calibrate.hand_eye.result import HandEyeResult
-from vision_robot.calibrate.hand_eye.settings import CameraKnowledge, HandEyeSettings
+from vision_robot.calibrate.hand_eye.settings import HandEyeSettings
 from vision_robot.calibrate.hand_eye.solve import calibrate_hand_eye
 
 __all__ = [
     "ArmNoise",
-    "CameraKnowledge",
     "GeometryTolerance",
     "HandEyeResult",
     "HandEyeSettings",

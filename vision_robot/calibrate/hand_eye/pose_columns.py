@@ -13,7 +13,7 @@ from vision_robot.types import Array, Float
 __all__ = ["columns_of", "table_of"]
 
 PICTURE = ("image", "picture", "file", "filename", "name", "view", "photo", "frame")
-TIME = ("time", "time_s", "timestamp", "t", "stamp")
+TIME = ("time", "time_s", "timestamp", "t", "stamp", "id", "index", "number")
 POSITION = (("x", "y", "z"), ("tx", "ty", "tz"), ("px", "py", "pz"), ("pos_x", "pos_y", "pos_z"))
 QUATERNION = (("qw", "qx", "qy", "qz"), ("q_w", "q_x", "q_y", "q_z"), ("ow", "ox", "oy", "oz"))
 PLAIN_QUATERNION = (("q0", "q1", "q2", "q3"), ("q1", "q2", "q3", "q4"))
@@ -40,9 +40,27 @@ UNNAMED = {
 class Column:
     """Numbers, or texts, under one name, with the unit the name ended in."""
 
+    name: str
     cells: tuple[str, ...]
     unit: str
-    numbers: Float[Array, "n"] | None
+    rows: tuple[str, ...]
+    source: str
+
+    @property
+    def numbers(self) -> Float[Array, "n"]:
+        """The cells as finite numbers; raises BadPoseFile naming the first that is none."""
+        return np.array([self._value(text, row) for text, row in zip(self.cells, self.rows, strict=True)])
+
+    @property
+    def is_text(self) -> bool:
+        """Whether no cell is a number: a remark, a date."""
+        return all(_number(cell) is None for cell in self.cells)
+
+    def _value(self, text: str, row: str) -> float:
+        value = _number(text)
+        if value is None or not np.isfinite(value):
+            raise BadPoseFile(self.source, f"{row}: {self.name} is {text[:40]!r}, not a finite number")
+        return value
 
 
 def columns_of(
@@ -51,7 +69,7 @@ def columns_of(
     """Columns by their plain names; picture names that stand first in a file without header are found."""
     width = len(cells[0])
     if header is None:
-        named = width - 1 in UNNAMED and not _number(cells[0][0])
+        named = width - 1 in UNNAMED and _number(cells[0][0]) is None
         names = ("image", *UNNAMED[width - 1]) if named else UNNAMED.get(width)
         if names is None:
             raise BadPoseFile(
@@ -67,13 +85,9 @@ def columns_of(
             stem, mark, ending = name.rpartition("_")
             if mark and ending in (*LENGTHS, "deg", "rad"):
                 name, unit = stem, ending
-        texts = tuple(row[j] for row in cells)
-        numbers = None
-        if name not in PICTURE:
-            numbers = np.array([_value(text, path, rows[i], full) for i, text in enumerate(texts)])
         if name in columns:
             raise BadPoseFile(path, f"two columns are called {name}")
-        columns[name] = Column(texts, unit, numbers)
+        columns[name] = Column(full, tuple(row[j] for row in cells), unit, tuple(rows), str(path))
     return columns
 
 
@@ -99,7 +113,7 @@ def table_of(columns: Mapping[str, Column], rows: Sequence[str], path: Path) -> 
         angle = "rad" if what == "quaternion" else _unit(columns, names, path, unit)
         reading = Reading(what, order, _unit(columns, position, path, "m"), angle, inverse)
         used |= {*position, *names}
-    joints = [name for name in columns if name not in used]
+    joints = [name for name, column in columns.items() if name not in used and not column.is_text]
     if not len(shift) and not joints:
         raise BadPoseFile(
             path,
@@ -144,7 +158,9 @@ def _turn_names(columns: Mapping[str, Column]) -> tuple[tuple[str, ...], str, st
     """Names, kind, order and unit of whatever tells the turn."""
     for names in QUATERNION:
         if set(names) <= set(columns):
-            return names, "quaternion", "wxyz", ""
+            # In the order of the file: that is what a wrong header gets wrong.
+            there = tuple(name for name in columns if name in names)
+            return there, "quaternion", "".join(name[-1] for name in there), ""
     for names in ROTVEC:
         if set(names) <= set(columns):
             return names, "rotvec", "", "rad"
@@ -158,8 +174,7 @@ def _turn_names(columns: Mapping[str, Column]) -> tuple[tuple[str, ...], str, st
 
 
 def _stack(columns: Mapping[str, Column], names: Sequence[str]) -> Float[Array, "n k"]:
-    found = [columns[name].numbers for name in names]
-    return np.stack([numbers for numbers in found if numbers is not None], axis=1)
+    return np.stack([columns[name].numbers for name in names], axis=1)
 
 
 def _unit(columns: Mapping[str, Column], names: Sequence[str], path: Path, otherwise: str) -> str:
@@ -172,17 +187,9 @@ def _unit(columns: Mapping[str, Column], names: Sequence[str], path: Path, other
 
 
 def _in_si(column: Column) -> Float[Array, "n"]:
-    assert column.numbers is not None
     if column.unit == "deg":
         return np.radians(column.numbers)
     return column.numbers * LENGTHS.get(column.unit, 1.0)
-
-
-def _value(text: str, path: Path, row: str, column: str) -> float:
-    value = _number(text)
-    if value is None or not np.isfinite(value):
-        raise BadPoseFile(path, f"{row}: {column} is {text[:40]!r}, not a finite number")
-    return value
 
 
 def _number(text: str) -> float | None:

@@ -18,6 +18,7 @@ from vision_robot.calibrate.normal_equations import residuals
 from vision_robot.calibrate.result import Rejected
 from vision_robot.calibrate.state import State
 from vision_robot.geometry import SE3, Camera
+from vision_robot.geometry.hand_eye import HandEye
 from vision_robot.types import Array, Float
 
 __all__ = ["HandEyeResult"]
@@ -98,6 +99,19 @@ class HandEyeResult:
         said = State(pictures.camera, self.state.predicted_cam_from_board, pictures.warp)
         off = residuals(said, seen)
         return [e[:, present].T for e, present in zip(off, seen.present, strict=True)]
+
+    @property
+    def hand_eye(self) -> HandEye:
+        """What later work needs of it."""
+        return HandEye(
+            setup=self.setup.name,
+            camera=self.camera,
+            mount_from_cam=self.mount_from_cam,
+            far_from_board=self.far_from_board,
+            covariance=self.covariance.joint,
+            arm_turn=self.noise.noise.turn,
+            arm_shift_m=self.noise.noise.shift_m,
+        )
 
     @property
     def rms_px(self) -> float:

@@ -25,10 +25,10 @@ MATRIX_SLACK = 0.02
 def from_quaternion(
     values: Float[Array, "n 4"], order: str
 ) -> tuple[Float[Array, "n 3 3"], Float[Array, "n"]]:
-    """Rotations of quaternions, `order` wxyz or xyzw, and how far each length is from one."""
-    if order not in ("wxyz", "xyzw"):
+    """Rotations of quaternions, their numbers in that `order`, and how far each length is from one."""
+    if sorted(order) != sorted("wxyz"):
         raise BadParameter("quaternion order", order, "wxyz or xyzw")
-    q = np.roll(values, 1, axis=1) if order == "xyzw" else np.asarray(values)
+    q = np.asarray(values)[:, [order.index(letter) for letter in "wxyz"]]
     length = np.linalg.norm(q, axis=1)
     w, x, y, z = (q / np.maximum(length, 1e-12)[:, None]).T
     rows = [

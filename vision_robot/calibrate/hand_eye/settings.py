@@ -9,36 +9,8 @@ from vision_robot.calibrate.hand_eye.arm import GeometryTolerance
 from vision_robot.calibrate.hand_eye.problem import ArmNoise
 from vision_robot.calibrate.hand_eye.setup import Setup, setup_named
 from vision_robot.errors import BadParameter
-from vision_robot.types import Array, Float
 
-__all__ = ["CameraKnowledge", "HandEyeSettings"]
-
-
-@dataclass(frozen=True)
-class CameraKnowledge:
-    """Covariance (p, p) of Camera.parameters from its own calibration; zero rows are held.
-
-    With it the camera is estimated along; `None` in the settings takes it as exact.
-    """
-
-    covariance: Float[Array, "p p"]
-
-    @property
-    def free(self) -> Array:
-        """Which parameters are uncertain."""
-        return np.diag(self.covariance) > 0
-
-    @property
-    def information(self) -> Float[Array, "p p"]:
-        """Its inverse over the free parameters, zero elsewhere."""
-        free = np.flatnonzero(self.free)
-        part = self.covariance[np.ix_(free, free)]
-        scale = np.sqrt(np.diag(part))
-        whole = np.zeros_like(self.covariance)
-        whole[np.ix_(free, free)] = np.linalg.pinv(part / np.outer(scale, scale), hermitian=True) / np.outer(
-            scale, scale
-        )
-        return whole
+__all__ = ["HandEyeSettings"]
 
 
 @dataclass(frozen=True)
@@ -46,14 +18,14 @@ class HandEyeSettings:
     """Which set-up, and what is estimated besides.
 
     `noise` fixes the arm's noise instead of estimating it; `geometry` has the arm's links corrected, where
-    joint values and a model are given; `camera` is how well the intrinsics are known; `robust`
-    leaves out views that noise cannot explain.
+    joint values and a model are given; `free_camera` estimates the intrinsics as if little were known of
+    them; `robust` leaves out views that noise cannot explain.
     """
 
     setup: str = "eye-in-hand"
     noise: ArmNoise | None = None
     geometry: GeometryTolerance | None = None
-    camera: CameraKnowledge | None = None
+    free_camera: bool = False
     robust: bool = True
 
     def __post_init__(self) -> None:

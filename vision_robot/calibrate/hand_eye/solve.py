@@ -39,7 +39,7 @@ from vision_robot.calibrate.hand_eye.state import HandEyeState
 from vision_robot.calibrate.result import Rejected
 from vision_robot.calibrate.state import State
 from vision_robot.errors import BadParameter, DegeneratePoses, NoConvergence, TooFewPoses
-from vision_robot.geometry import SE3, Camera, SerialChain
+from vision_robot.geometry import SE3, Camera, KnownCamera, SerialChain
 from vision_robot.types import Array, Bool, Float
 
 __all__ = ["calibrate_hand_eye"]
@@ -52,7 +52,7 @@ def calibrate_hand_eye(
     corners: Sequence[Corners],
     poses: SE3 | PoseTable,
     board_points: Float[Array, "m 3"],
-    camera: Camera,
+    camera: Camera | KnownCamera,
     settings: HandEyeSettings | None = None,
     *,
     arm: SerialChain | None = None,
@@ -66,7 +66,7 @@ def calibrate_hand_eye(
         poses: base_from_wrist of the same views as the arm says it, or the table of a pose file, whose
             meaning is then checked too.
         board_points: Board points (m, 3) [m] in the board frame.
-        camera: The camera's intrinsics.
+        camera: The camera's intrinsics; with their covariance they are estimated along, from there.
         settings: Which set-up, and what is estimated besides; `HandEyeSettings()` where left out.
         arm: The arm's model, for joint values.
         joints: Joint values [rad or m] of the views; with `arm` they take the place of `poses`.
@@ -91,7 +91,10 @@ def calibrate_hand_eye(
         )
     if len(corners) < FEWEST_POSES:
         raise TooFewPoses(len(corners), FEWEST_POSES, len(corners) + len(rejected))
-    views, usable, left_out = find_board_poses(corners, board_points, camera, robust=settings.robust)
+    known_camera = camera if isinstance(camera, KnownCamera) else KnownCamera.exact(camera)
+    views, usable, left_out = find_board_poses(
+        corners, board_points, known_camera.camera, robust=settings.robust
+    )
     if len(views) < FEWEST_POSES:
         raise TooFewPoses(
             len(views), FEWEST_POSES, len(corners) + len(rejected), "the board was seen too badly"
@@ -116,10 +119,17 @@ def calibrate_hand_eye(
     check_pairing(mount_from_far, views.cam_from_board, fit)
 
     everything = _start(setup, fit, views, given, arm, joints, settings)
-    problem = _problem(views, settings, fit)
+    problem = _problem(views, settings, fit, known_camera)
     end, problem, estimate, keep = _settled(everything, problem, settings, fit)
     names = [corners[int(i)].image for i in index]
-    late = _why(end.state, everything, keep, problem.noise, names, problem=_problem(views, settings, fit))
+    late = _why(
+        end.state,
+        everything,
+        keep,
+        problem.noise,
+        names,
+        problem=_problem(views, settings, fit, known_camera),
+    )
     if keep.sum() < FEWEST_POSES:
         raise TooFewPoses(int(keep.sum()), FEWEST_POSES, len(corners), "the others contradict each other")
     kept = np.flatnonzero(keep)
@@ -169,14 +179,32 @@ def _start(
     return HandEyeState(setup, fixed, carried, views.state, own)
 
 
-def _problem(views: BoardViews, settings: HandEyeSettings, fit: Fit) -> HandEyeProblem:
+def _problem(views: BoardViews, settings: HandEyeSettings, fit: Fit, camera: KnownCamera) -> HandEyeProblem:
     turn, shift = (float(np.median(part)) / 1.54 for part in (fit.turn, fit.shift_m))
     noise = settings.noise or ArmNoise(max(turn, LEAST.turn), max(shift, LEAST.shift_m))
-    if settings.camera is None:
+    spread = _little_known(camera.camera) if settings.free_camera else camera.covariance
+    free: Array = np.diag(spread) > 0
+    if not free.any():
         return HandEyeProblem(views.problem, noise)
-    free: Array = settings.camera.free
-    camera = views.state.camera
-    return HandEyeProblem(views.problem.freeing(free), noise, camera.parameters, settings.camera.information)
+    freed, mean = views.problem.freeing(free), camera.camera.parameters
+    return HandEyeProblem(freed, noise, mean, _information(spread, free))
+
+
+def _little_known(camera: Camera) -> Float[Array, "p p"]:
+    """Covariance that keeps what the views do not tell near its value; the skew is held."""
+    size = float(np.hypot(camera.width, camera.height))
+    affine = [0.1 * camera.fx, 0.1 * camera.fy, 0.1 * size, 0.1 * size, 0.0]
+    return np.diag(np.square(affine + [1.0] * len(camera.distortion)))
+
+
+def _information(covariance: Float[Array, "p p"], free: Bool[Array, "p"]) -> Float[Array, "p p"]:
+    """Inverse over the free parameters, which span eight orders of magnitude; zero elsewhere."""
+    index = np.ix_(np.flatnonzero(free), np.flatnonzero(free))
+    scale = np.sqrt(np.diag(covariance))[free]
+    whole = np.zeros_like(covariance)
+    inverse = np.linalg.pinv(covariance[index] / np.outer(scale, scale), hermitian=True)
+    whole[index] = inverse / np.outer(scale, scale)
+    return whole
 
 
 def _settled(
@@ -253,6 +281,6 @@ def _why(
     every_pose = state.setup.mount_from_far(whole.arm.base_from_wrist)
     seen = everything.pictures.cam_from_board
     return [
-        Rejected(names[i], reason(int(i), state, every_pose, seen[int(i)], noise, off[i], names))
+        Rejected(names[int(i)], reason(int(i), state, every_pose, seen[int(i)], noise, off[i], names))
         for i in np.flatnonzero(~keep)
     ]
