@@ -16,7 +16,7 @@ SOURCES = [ROOT / "vision_robot", ROOT / "datasets_synth/vision_robot_synth", RO
 LAYERS = (
     ("types", "errors", "files"),
     ("geometry",),
-    ("formats", "calibrate", "flow", "arm", "sim", "images", "video", "tracks", "dataset"),
+    ("formats", "calibrate", "extrinsics", "flow", "arm", "sim", "images", "video", "tracks", "dataset"),
     ("track", "pick", "machine"),
     ("evaluate",),
     ("report",),
