@@ -25,6 +25,7 @@ __all__ = [
     "NoConvergence",
     "NoImages",
     "TooFewViews",
+    "OffPlane",
     "UnlevelBoard",
     "UnreadableImage",
     "UnwritableOutput",
@@ -172,6 +173,16 @@ class UnlevelBoard(BadInput):
         super().__init__(
             f"the board in {image} does not lie on the plane of the first photo ({height_mm:+.1f} mm off it, "
             f"tilted by {tilt_deg:.1f} degrees): lay it flat on the table, and keep the camera still"
+        )
+
+
+class OffPlane(BadInput):
+    """A pixel sees no part of the work plane."""
+
+    def __init__(self, name: str, pixel: tuple[float, float], why: str):
+        self.name, self.pixel, self.why = name, pixel, why
+        super().__init__(
+            f"{name} at ({pixel[0]:.6g}, {pixel[1]:.6g}) px sees no part of the plane ({why}): leave it out"
         )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from vision_robot.calibrate.corners import Corners
 from vision_robot.calibrate.result import Rejected
+from vision_robot.calibrate.weighting import trust
 from vision_robot.errors import BadParameter
 from vision_robot.extrinsics.board_pose import BoardPose, board_pose, pose_jacobian, refined_pose
 from vision_robot.extrinsics.plane_checks import (
@@ -118,7 +119,12 @@ def fit_plane(
     if robust:
         views, lost = _without_outliers(known, views, board_points, poses)
         rejected += lost
-        poses = [board_pose(known.camera, view, board_points) for view in views]
+    if sigma_px is None:
+        views = _trusted(known, views, board_points, poses)
+    poses = [
+        refined_pose(known.camera, v, board_points, p.cam_from_board)
+        for v, p in zip(views, poses, strict=True)
+    ]
     for view, pose in zip(views, poses, strict=True):
         check_points(view, board_points)
         check_level(view, board_points, pose, sigma_px)
@@ -186,6 +192,24 @@ def _assembled(
         rival_gap=gap,
         rejected=tuple(rejected),
     )
+
+
+def _trusted(
+    known: KnownCamera, views: list[Corners], board_points: Float[Array, "m 3"], poses: list[BoardPose]
+) -> list[Corners]:
+    """The views with their points weighed by what the residuals say of the detector's word."""
+    lengths = [
+        np.linalg.norm(known.camera.project(p.cam_from_board.apply(board_points[v.ids])) - v.pixels, axis=1)
+        for v, p in zip(views, poses, strict=True)
+    ]
+    believed = trust(np.concatenate(lengths), np.concatenate([view.sigma_px for view in views]))
+    if max(believed.scale, believed.floor_px) < EXACT_PX:
+        return views
+    return [Corners(v.image, v.ids, v.pixels, believed.sigma(v.sigma_px)) for v in views]
+
+
+EXACT_PX = 1e-8
+"""Residuals of this size are rounding."""
 
 
 def _without_outliers(
