@@ -17,6 +17,7 @@ CHECKED = [
     "vision_robot.formats",
     "vision_robot.calibrate",
     "vision_robot.track",
+    "vision_robot.extrinsics",
 ]
 
 # Annotations mean what they say, except that an int may stand where a float is asked for (PEP 484).

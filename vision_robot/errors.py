@@ -11,6 +11,7 @@ from typing import Any
 
 __all__ = [
     "BadArm",
+    "AmbiguousPlane",
     "BadCameraFile",
     "BadCornerFile",
     "BadFrame",
@@ -25,6 +26,7 @@ __all__ = [
     "DegeneratePoses",
     "DegenerateViews",
     "MissingLimits",
+    "EdgeOnPlane",
     "MissingOpenGL",
     "MissingPackage",
     "MixedImageSizes",
@@ -35,6 +37,8 @@ __all__ = [
     "TooFewPoses",
     "TooFewViews",
     "UnknownStructure",
+    "OffPlane",
+    "UnlevelBoard",
     "UnreadableImage",
     "UnwritableOutput",
     "VisionRobotError",
@@ -172,6 +176,50 @@ class DegenerateViews(BadInput):
             else "take a simpler --model or --fix them, or add views that reach the picture's corners"
         )
         super().__init__(f"{', '.join(undetermined)} cannot be known from these views ({why}): {mend}")
+
+
+class EdgeOnPlane(BadInput):
+    """A plane is seen so nearly from the side that the picture does not tell where it is."""
+
+    def __init__(self, image: str, elevation_deg: float, across_px: float):
+        self.image, self.elevation_deg, self.across_px = image, elevation_deg, across_px
+        super().__init__(
+            f"{image} sees the plane edge-on (line of sight {elevation_deg:.1f} degrees above it, its points "
+            f"within {across_px:.2g} px of a line): look down on it by 10 degrees or more"
+        )
+
+
+class AmbiguousPlane(BadInput):
+    """Two tilts of a plane, mirrored about the line of sight, explain a picture equally well."""
+
+    def __init__(self, image: str, apart_deg: float, gap_sigma: float):
+        self.image, self.apart_deg, self.gap_sigma = image, apart_deg, gap_sigma
+        super().__init__(
+            f"{image} does not tell which of two tilts, {apart_deg:.1f} degrees apart, the plane has (they "
+            f"differ by {gap_sigma:.1f} sigma): take the photo from nearer, or with a larger board or points "
+            "farther apart"
+        )
+
+
+class UnlevelBoard(BadInput):
+    """A board does not lie on the plane that the first view shows."""
+
+    def __init__(self, image: str, height_mm: float, tilt_deg: float):
+        self.image, self.height_mm, self.tilt_deg = image, height_mm, tilt_deg
+        super().__init__(
+            f"the board in {image} does not lie on the plane of the first photo ({height_mm:+.1f} mm off it, "
+            f"tilted by {tilt_deg:.1f} degrees): lay it flat on the table, and keep the camera still"
+        )
+
+
+class OffPlane(BadInput):
+    """A pixel sees no part of the work plane."""
+
+    def __init__(self, name: str, pixel: tuple[float, float], why: str):
+        self.name, self.pixel, self.why = name, pixel, why
+        super().__init__(
+            f"{name} at ({pixel[0]:.6g}, {pixel[1]:.6g}) px sees no part of the plane ({why}): leave it out"
+        )
 
 
 class BadCameraFile(BadInput):

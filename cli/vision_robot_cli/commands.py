@@ -31,6 +31,10 @@ EXTRINSICS: dict[str, Command] = {
         "vision_robot_cli.hand_eye:hand_eye",
         "Where the camera sits on the arm, or beside it, from photos of a board and the arm's poses.",
     ),
+    "plane": Command(
+        "vision_robot_cli.plane:plane",
+        "Where the table is before the camera, from photos of a board lying on it, or marked points.",
+    ),
 }
 
 COMMANDS: dict[str, Command | Group] = {
@@ -46,6 +50,10 @@ COMMANDS: dict[str, Command | Group] = {
         "vision_robot_cli.calibrate:calibrate",
         "Calibrate a camera from photos, a video, corner files or, with nothing given, a rendered set.",
     ),
+    "convert": Command(
+        "vision_robot_cli.convert:convert",
+        "A camera or rig file into any other tool's format.",
+    ),
     "demo": Command(
         "vision_robot_cli.demo:demo",
         "The main job in one go: render a board, calibrate, show the camera beside the truth.",
@@ -57,6 +65,14 @@ COMMANDS: dict[str, Command | Group] = {
     "extrinsics": Group(
         EXTRINSICS,
         "Where the camera is: on an arm, over a table, beside other cameras.",
+    ),
+    "measure": Command(
+        "vision_robot_cli.measure:measure",
+        "Pixels to millimetres on the work plane, each with its sigma.",
+    ),
+    "undistort": Command(
+        "vision_robot_cli.undistort:undistort",
+        "Pictures or a video without lens distortion, and the camera they then have.",
     ),
 }
 

@@ -5,7 +5,19 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["BoardName", "BoardOption", "BoardSize", "Json", "Out", "Report", "Seed", "Square"]
+__all__ = [
+    "BoardName",
+    "BoardOption",
+    "BoardSize",
+    "CameraFile",
+    "CameraName",
+    "Json",
+    "Out",
+    "Report",
+    "Seed",
+    "Square",
+    "Synthetic",
+]
 
 BoardName = Annotated[
     str, typer.Option("--board", help="chessboard, charuco, circles, acircles or aprilgrid.")
@@ -29,3 +41,13 @@ Json = Annotated[bool, typer.Option("--json", help="Write one JSON object to std
 Out = Annotated[Path | None, typer.Option("-o", "--out", help="Where the result is written.")]
 Report = Annotated[Path | None, typer.Option("--report", help="Also write a self-contained HTML page.")]
 Seed = Annotated[int, typer.Option("--seed", help="Seed of everything that is drawn by chance.")]
+CameraFile = Annotated[
+    Path | None,
+    typer.Option("--camera", help="Camera file of any format; our own JSON carries its uncertainty."),
+]
+CameraName = Annotated[
+    str | None, typer.Option(help="Which camera, where the file holds several (Kalibr, COLMAP).")
+]
+Synthetic = Annotated[
+    bool, typer.Option("--synthetic", help="Pictures rendered in MuJoCo, the result beside the truth.")
+]

@@ -4,7 +4,7 @@ import re
 
 from vision_robot.errors import BadParameter
 
-__all__ = ["length_m", "whole_pair"]
+__all__ = ["length_m", "offset_m", "offset_pair_m", "whole_pair"]
 
 METRES = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 
@@ -37,3 +37,27 @@ def whole_pair(text: str, option: str) -> tuple[int, int]:
     if min(pair) < 1:
         raise BadParameter(option, text, "two positive whole numbers, across x down, such as 9x6")
     return pair
+
+
+def offset_m(text: str, option: str) -> float:
+    """A length with its unit that may be zero or negative, in metres; a bare 0 needs no unit."""
+    plain = text.strip()
+    if plain in ("0", "+0", "-0"):
+        return 0.0
+    sign = -1.0 if plain.startswith("-") else 1.0
+    number = re.match(r"[0-9.]+", plain.lstrip("+-"))
+    if number and not any(digit in "123456789" for digit in number[0]):
+        length_m(f"1{plain.lstrip('+-')[number.end() :]}", option)  # a zero still needs a unit that exists
+        return 0.0
+    try:
+        return sign * length_m(plain.lstrip("+-") if plain[:1] in "+-" else plain, option)
+    except BadParameter:
+        raise BadParameter(option, text, "a length with its unit, such as 120mm, -35mm or 0") from None
+
+
+def offset_pair_m(text: str, option: str) -> tuple[float, float]:
+    """Two such lengths, ``120mm,-35mm``. Raises BadParameter naming `option`."""
+    words = text.split(",")
+    if len(words) != 2:
+        raise BadParameter(option, text, "two lengths with their units, such as 120mm,-35mm")
+    return offset_m(words[0], option), offset_m(words[1], option)

@@ -127,7 +127,7 @@ def read_known_camera(
     """As `read_camera`, with the covariance that files of our own carry; exact in all other formats."""
     source = open_source(path, size)
     target = format_named(format) if format else _recognised(source)
-    if target is format_named("native"):
+    if target is format_named("native") and name is None:
         return read_known(source)
     return KnownCamera.exact(read_camera(path, format, size=size, name=name))
 

@@ -1,21 +1,23 @@
 """Kalibr's camchain YAML: cam0, cam1, ...
 
 camera_model pinhole with distortion_model none, radtan (k1 k2 p1 p2: brown5 with k3 = 0) or
-equidistant; omni, ds, eucm and fov are refused by name. Poses between the cameras are left
-aside.
+equidistant; omni, ds, eucm and fov are refused by name. T_cn_cnm1 of a camera carries points from the
+camera before it, so that a chain is a rig (`vision_robot.formats.rig`); for single cameras it is left aside.
 """
 
 import re
+from collections.abc import Sequence
 
 from vision_robot.formats.camera_format import CameraFormat
 from vision_robot.formats.intrinsics import make_camera
 from vision_robot.formats.number import number_text
 from vision_robot.formats.parse import parse_yaml
+from vision_robot.formats.pose import read_matrix, stacked
 from vision_robot.formats.source import CameraSource
 from vision_robot.formats.tree import Tree
-from vision_robot.geometry import Camera
+from vision_robot.geometry import SE3, Camera
 
-__all__ = ["FORMAT"]
+__all__ = ["FORMAT", "read_poses", "write_chain"]
 
 LENSES = {"none": "pinhole", "radtan": "brown5", "equidistant": "fisheye"}
 COUNTS = {"none": 0, "radtan": 4, "equidistant": 4}
@@ -50,21 +52,43 @@ def _read_one(source: CameraSource, cam: Tree) -> Camera:
     return make_camera(source, cam.get("resolution").pair(), (fx, fy, cx, cy, 0.0), lens, k)
 
 
+def read_poses(source: CameraSource) -> SE3:
+    """Each camera from the first, (cameras,); raises BadCameraFile where one of the links is missing."""
+    tree = parse_yaml(source)
+    names = [name for name in tree.names() if re.fullmatch(r"cam\d+", name)]
+    poses = [SE3.identity()]
+    for name in names[1:]:
+        poses.append(read_matrix(tree.get(name).get("T_cn_cnm1")) @ poses[-1])
+    return stacked(poses)
+
+
 def write(camera: Camera, suffix: str) -> bytes:  # noqa: ARG001
     """A chain of one camera, cam0."""
-    kind = next(kind for kind, model in LENSES.items() if model == camera.model)
-    affine = ", ".join(map(number_text, (camera.fx, camera.fy, camera.cx, camera.cy)))
-    k = ", ".join(map(number_text, camera.distortion[: COUNTS[kind]]))
-    lines = [
-        "cam0:",
-        "  camera_model: pinhole",
-        f"  intrinsics: [{affine}]",
-        f"  distortion_model: {kind}",
-        f"  distortion_coeffs: [{k}]",
-        "  cam_overlaps: []",
-        "  rostopic: /cam0/image_raw",
-        f"  resolution: [{camera.width}, {camera.height}]",
-    ]
+    return write_chain([camera], SE3.identity(1))
+
+
+def write_chain(cameras: Sequence[Camera], cam_from_rig: SE3) -> bytes:
+    """cam0, cam1, ... with T_cn_cnm1; every camera is taken to see what the others see."""
+    lines = []
+    for i, camera in enumerate(cameras):
+        kind = next(kind for kind, model in LENSES.items() if model == camera.model)
+        affine = ", ".join(map(number_text, (camera.fx, camera.fy, camera.cx, camera.cy)))
+        k = ", ".join(map(number_text, camera.distortion[: COUNTS[kind]]))
+        others = ", ".join(str(j) for j in range(len(cameras)) if j != i)
+        lines.append(f"cam{i}:")
+        if i:
+            lines.append("  T_cn_cnm1:")
+            step = cam_from_rig[i] @ cam_from_rig[i - 1].inverse()
+            lines += [f"  - [{', '.join(map(number_text, row))}]" for row in step.as_matrix().tolist()]
+        lines += [
+            "  camera_model: pinhole",
+            f"  intrinsics: [{affine}]",
+            f"  distortion_model: {kind}",
+            f"  distortion_coeffs: [{k}]",
+            f"  cam_overlaps: [{others}]",
+            f"  rostopic: /cam{i}/image_raw",
+            f"  resolution: [{camera.width}, {camera.height}]",
+        ]
     return ("\n".join(lines) + "\n").encode()
 
 

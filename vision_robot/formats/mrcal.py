@@ -1,20 +1,23 @@
 """mrcal's .cameramodel: a Python literal, read here without evaluating it.
 
 LENSMODEL_PINHOLE, LENSMODEL_OPENCV4, 5 and 8, by mrcal's own order fx fy cx cy and OpenCV's
-coefficients; other lens models are refused by name. Pose, uncertainty and the inputs of the
-optimisation are left aside; the pose is written as identity.
+coefficients; other lens models are refused by name. Uncertainty and the inputs of the optimisation are left
+aside. The pose, a rotation vector and a translation from the reference to the camera, makes several files
+a rig (`vision_robot.formats.rig`); for a single camera it is left aside and written as identity.
 """
 
 import re
+
+import numpy as np
 
 from vision_robot.formats.camera_format import ALL_LENSES, CameraFormat
 from vision_robot.formats.intrinsics import make_camera
 from vision_robot.formats.number import number_text
 from vision_robot.formats.source import CameraSource
 from vision_robot.formats.tree import Tree
-from vision_robot.geometry import Camera
+from vision_robot.geometry import SE3, Camera
 
-__all__ = ["FORMAT"]
+__all__ = ["FORMAT", "read_pose", "write_posed"]
 
 MODELS = {
     "LENSMODEL_PINHOLE": ("pinhole", 0),
@@ -52,6 +55,14 @@ def read(source: CameraSource) -> dict[str, Camera]:
     return {"camera": make_camera(source, size, affine, model, k)}
 
 
+def read_pose(source: CameraSource) -> SE3:
+    """cam_from_reference of the file; raises BadCameraFile where it holds none."""
+    text = re.sub(r"(?m)^[ \t]*#[^\n]*$", "", source.text)
+    newer = re.search(r"['\"]rt_cam_ref['\"]", text) is not None
+    rt = np.array(_list(source, text, "rt_cam_ref" if newer else "extrinsics").numbers(6))
+    return SE3.from_rotvec(rt[:3], rt[3:])
+
+
 def _list(source: CameraSource, text: str, key: str) -> Tree:
     found = re.search(rf"['\"]{key}['\"]\s*:\s*[\[(]([^\]):]*)[\])]", text)
     if found is None:
@@ -64,8 +75,14 @@ def _list(source: CameraSource, text: str, key: str) -> Tree:
 
 def write(camera: Camera, suffix: str) -> bytes:  # noqa: ARG001
     """The dict as mrcal lays it out."""
+    return write_posed(camera, SE3.identity())
+
+
+def write_posed(camera: Camera, cam_from_reference: SE3) -> bytes:
+    """The same with a pose."""
     name = {"pinhole": "PINHOLE", "brown5": "OPENCV5", "brown8": "OPENCV8"}[camera.model]
     values = (camera.fx, camera.fy, camera.cx, camera.cy, *camera.distortion)
+    rt = (*cam_from_reference.rotvec(), *cam_from_reference.translation)
     lines = [
         "{",
         f"    'lensmodel':  'LENSMODEL_{name}',",
@@ -74,7 +91,7 @@ def write(camera: Camera, suffix: str) -> bytes:  # noqa: ARG001
         f"    'intrinsics': [ {', '.join(map(number_text, values))},],",
         "",
         # The name up to mrcal 2.4, which later versions still read.
-        "    'extrinsics': [ 0, 0, 0, 0, 0, 0,],",
+        f"    'extrinsics': [ {', '.join(map(number_text, rt))},],",
         "",
         f"    'imagersize': [ {camera.width}, {camera.height},],",
         "}",

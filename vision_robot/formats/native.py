@@ -13,9 +13,10 @@ from vision_robot.formats.covariance import covariance_object, read_covariance
 from vision_robot.formats.intrinsics import make_camera
 from vision_robot.formats.parse import parse_json
 from vision_robot.formats.source import CameraSource
+from vision_robot.formats.tree import Tree
 from vision_robot.geometry import Camera, KnownCamera, lens_named
 
-__all__ = ["FORMAT", "SCHEMA", "camera_object", "read_known", "write_known"]
+__all__ = ["FORMAT", "SCHEMA", "camera_from", "camera_object", "read_known", "write_known"]
 
 SCHEMA = "vr.camera/1"
 
@@ -27,9 +28,15 @@ def matches(source: CameraSource) -> bool:
 
 
 def read(source: CameraSource) -> dict[str, Camera]:
-    """The camera object, at the top or under `camera`."""
+    """The camera object, at the top or under `camera`; all of them of a rig's file."""
     top = parse_json(source)
-    tree = top.find("camera") or top
+    if top.find("cameras") is not None:
+        return _of_rig(top.get("cameras"))
+    return {"camera": camera_from(top.find("camera") or top)}
+
+
+def camera_from(tree: Tree) -> Camera:
+    """The camera in a `camera` object."""
     names = ("fx", "fy", "cx", "cy", "skew")
     fx, fy, cx, cy, skew = (tree.get(name).number() for name in names)
     model = tree.get("model")
@@ -39,7 +46,15 @@ def read(source: CameraSource) -> dict[str, Camera]:
         raise model.bad(str(error)) from error
     k = tree.get("distortion").numbers(count)
     size = (tree.get("width").whole(), tree.get("height").whole())
-    return {"camera": make_camera(source, size, (fx, fy, cx, cy, skew), model.text(), k)}
+    return make_camera(tree.source, size, (fx, fy, cx, cy, skew), model.text(), k)
+
+
+def _of_rig(listed: Tree) -> dict[str, Camera]:
+    """The cameras of a rig's file, by name."""
+    if not isinstance(listed.value, list):
+        raise listed.bad("a list of cameras expected")
+    each = [Tree(listed.source, value, f"{listed.key}[{i}]") for i, value in enumerate(listed.value)]
+    return {one.get("name").text(): camera_from(one.get("camera")) for one in each}
 
 
 def read_known(source: CameraSource) -> KnownCamera:
