@@ -101,16 +101,17 @@ class PinholeCover:
         for patch, picture, number in zip(self.patches, depths, numbers, strict=True):
             with np.errstate(divide="ignore"):
                 inverse = (1 / picture).astype(np.float32)  # linear in the pixel on every plane
-            smooth = _resample(inverse, patch.centres, cv2.INTER_LINEAR)
+            value = _resample(inverse, patch.centres, cv2.INTER_LINEAR)
             nearest = _resample(inverse, patch.centres, cv2.INTER_NEAREST)
             # No mixing of near and far, neither across the outline of a body nor where it hides itself.
             mixed = _resample(_uneven(number), patch.centres - 0.5, cv2.INTER_NEAREST) > 0
-            mixed |= np.abs(smooth - nearest) > 0.01 * nearest
+            mixed = (mixed | (np.abs(value - nearest) > 0.01 * nearest)) & patch.inside
+            value[mixed] = _one_sided(inverse, number, patch.centres[mixed])
             rays = self.rays[patch.window]
             along_face = rays @ patch.turn.rotation[:, 2]
             with np.errstate(divide="ignore", invalid="ignore"):
-                value = rays[..., 2] / (along_face * np.where(mixed, nearest, smooth))
-            np.copyto(depth[patch.window], value, where=patch.inside)
+                metres = rays[..., 2] / (along_face * value)
+            np.copyto(depth[patch.window], metres, where=patch.inside)
         return depth
 
     def assemble_numbers(self, numbers: Sequence[Int[Array, "rows columns"]]) -> Int[Array, "height width"]:
@@ -128,6 +129,26 @@ def _uneven(number: Int[Array, "rows columns"]) -> UInt8[Array, "rows columns"]:
     one = number[:-1, :-1]
     uneven[:-1, :-1] = (one != number[:-1, 1:]) | (one != number[1:, :-1]) | (one != number[1:, 1:])
     return uneven
+
+
+def _one_sided(
+    inverse: Float[Array, "rows columns"], number: Int[Array, "rows columns"], pixels: Float[Array, "n 2"]
+) -> Float[Array, "n"]:
+    """Inverse depth at pixels, continued from the nearest one along the body that is seen there."""
+    rows, columns = inverse.shape
+    u, v = np.rint(pixels).astype(np.intp).T
+    u, v = np.clip(u, 1, columns - 2), np.clip(v, 1, rows - 2)
+    value, mine = inverse[v, u], number[v, u]
+    result = value.copy()
+    for (du, dv), offset in (((1, 0), pixels[:, 0] - u), ((0, 1), pixels[:, 1] - v)):
+        slopes = []
+        for sign in (1, -1):
+            there = v + sign * dv, u + sign * du
+            slopes.append(np.where(number[there] == mine, sign * (inverse[there] - value), np.inf))
+        # Where both neighbours belong to the body, the smaller slope is the one that does not jump.
+        slope = np.where(np.abs(slopes[0]) <= np.abs(slopes[1]), slopes[0], slopes[1])
+        result += np.where(np.isfinite(slope), slope, 0) * offset
+    return result
 
 
 def _resample(picture: Array, pixels: Float[Array, "rows columns 2"], kernel: int) -> Array:
