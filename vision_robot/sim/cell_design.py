@@ -82,10 +82,10 @@ class Lights:
 
     azimuth_rad: float = 2.2
     """Where the key light stands, about {S}'s z from its x."""
-    elevation_rad: float = 1.05
-    """How high it stands."""
-    key: float = 0.55
-    ambient: float = 0.4
+    elevation_rad: float = 1.2
+    """How high it stands. At 1.05 it grazes the flanks of six-sided pencils, which shadow maps speckle."""
+    key: float = 0.5
+    ambient: float = 0.5
     shadows: bool = True
     shadow_px: int = 2048
     """Side of the shadow map; its cost is the cost of shadows."""

@@ -34,9 +34,8 @@ Picture: TypeAlias = UInt8[Array, "rows columns 3"]
 
 OWN_ARM = Path(vision_robot.arm.__file__).parent / "models" / "column_arm.xml"
 
-BACKGROUND, THINGS, COLLIDERS = 0, 1, 3
-"""Groups of geoms: table and floor; things on the table; what collides and is not drawn. Arms are drawn in
-group 2, as is the custom of MJCF files."""
+BACKGROUND, THINGS, ARMS, COLLIDERS = 0, 1, 2, 3
+"""Groups of geoms: table and floor; things on the table; arms as drawn; what collides and is not drawn."""
 ITEM, ARM = "item/", "arm/"
 """Beginnings of names."""
 TABLE, BELT, LABEL = "table", "belt", "label"
@@ -54,7 +53,7 @@ SCENE = """
           timestep="{timestep:.9g}"/>
   <statistic extent="1" center="{x:.9g} {y:.9g} {z:.9g}" meansize="0.05"/>
   <visual>
-    <map znear="0.05" zfar="8" shadowclip="0.75" shadowscale="0.9"/>
+    <map znear="0.05" zfar="8" shadowclip="0.6" shadowscale="0.9"/>
     <quality shadowsize="{shadow_px}" numslices="40" numstacks="16" numquads="4"/>
     <headlight ambient="0 0 0" diffuse="0 0 0" specular="0 0 0"/>
   </visual>
@@ -126,7 +125,10 @@ def _paint(model: MjModel, name: str, picture: Picture) -> None:
 
 
 def _add_table(mj: Any, spec: MjSpec, station: MjsBody, table: Table, belt: Belt | None) -> None:
-    """The top as one box, or as two with the belt between; below it a floor."""
+    """The top as one box, or as two with the belt between; below it a floor.
+
+    They cast no shadow themselves: a shadow map speckles large faces with their own.
+    """
     material = spec.add_material(name=TABLE, specular=0.08, shininess=0.2)
     material.textures[mj.mjtTextureRole.mjTEXROLE_RGB] = TABLE
     (width, depth), (x, y) = table.size_m, table.middle_m
@@ -147,6 +149,7 @@ def _add_table(mj: Any, spec: MjSpec, station: MjsBody, table: Table, belt: Belt
             material=TABLE,
             group=BACKGROUND,
             friction=TABLE_FRICTION,
+            castshadow=False,
         )
     station.add_geom(
         name="floor",
@@ -156,6 +159,7 @@ def _add_table(mj: Any, spec: MjSpec, station: MjsBody, table: Table, belt: Belt
         rgba=[0.36, 0.37, 0.39, 1],
         group=BACKGROUND,
         friction=TABLE_FRICTION,
+        castshadow=False,
     )
 
 
@@ -191,7 +195,12 @@ def _add_belt(
         group=BACKGROUND,
         contype=0,
         conaffinity=0,
+        castshadow=False,
     )
+
+
+SKY_SHARE = 0.25
+"""Share of the ambient light that comes from straight above, so that sides are darker than tops."""
 
 
 def _add_lights(mj: Any, spec: MjSpec, lights: Lights, base_from_station: SE3) -> None:
@@ -213,8 +222,8 @@ def _add_lights(mj: Any, spec: MjSpec, lights: Lights, base_from_station: SE3) -
         type=mj.mjtLightType.mjLIGHT_DIRECTIONAL,
         pos=base_from_station.translation + 2 * up,
         dir=-up,
-        diffuse=[0.35 * lights.ambient] * 3,
-        ambient=[0.65 * lights.ambient] * 3,
+        diffuse=[SKY_SHARE * lights.ambient] * 3,
+        ambient=[(1 - SKY_SHARE) * lights.ambient] * 3,
         specular=[0, 0, 0],
         castshadow=False,
     )
@@ -257,7 +266,6 @@ def _add_collider(mj: Any, spec: MjSpec, body: MjsBody, item: Item, shape: Shape
     kinds = {
         "box": mj.mjtGeom.mjGEOM_BOX,
         "capsule": mj.mjtGeom.mjGEOM_CAPSULE,
-        "cylinder": mj.mjtGeom.mjGEOM_CYLINDER,
         "mesh": mj.mjtGeom.mjGEOM_MESH,
     }
     if collider.kind == "mesh":
@@ -291,6 +299,9 @@ def _add_arm(mj: Any, spec: MjSpec, mount: ArmMount) -> None:
         raise BadParameter("arm", str(path), 'an MJCF file with a site "tool" between the fingers')
     if mount.label is not None:
         _add_label(mj, arm, tool.parent, mount, mount.label)
+    for geom in arm.geoms:
+        if geom.group == BACKGROUND:  # where MJCF files that know no groups have all their geoms
+            geom.group = ARMS
     spec.attach(arm, frame=spec.worldbody.add_frame(), prefix=ARM)
 
 

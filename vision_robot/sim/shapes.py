@@ -37,7 +37,7 @@ class Collider:
     """A MuJoCo primitive for contacts: type, size and place in the item's frame."""
 
     kind: str
-    """box, capsule, cylinder, or mesh: the hull itself."""
+    """box, capsule, or mesh: the hull itself."""
     size: tuple[float, ...] = ()
     middle: tuple[float, float, float] = (0.0, 0.0, 0.0)
     along_x: bool = False
@@ -136,8 +136,7 @@ def _disc(size: tuple[float, ...], colour: Colour) -> Shape:
     diameter, thickness = size
     rings = [_ring(z, diameter / 2, SIDES)[:, [1, 2, 0]] for z in (-thickness / 2, thickness / 2)]
     hull = np.concatenate(rings)
-    cylinder = Collider("cylinder", (diameter / 2, thickness / 2))
-    return Shape((Part(hull, colour),), hull, (cylinder,), thickness / 2, PAPER, has_yaw=False)
+    return Shape((Part(hull, colour),), hull, (Collider("mesh"),), thickness / 2, PAPER, has_yaw=False)
 
 
 SHAPES: dict[str, tuple[tuple[str, ...], Callable[[tuple[float, ...], Colour], Shape]]] = {
