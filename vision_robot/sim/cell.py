@@ -154,10 +154,8 @@ class Cell:
     def _move_paths(self) -> None:
         for item, mocap, path in self._paths:
             pose = self.base_from_station @ resting(item, path.at(self.time_s))
-            self.data.mocap_pos[mocap], self.data.mocap_quat[mocap] = (
-                pose.translation,
-                quaternion(pose.rotation),
-            )
+            self.data.mocap_pos[mocap] = pose.translation
+            self.data.mocap_quat[mocap] = quaternion(pose.rotation)
 
     def _settle_kinematics(self) -> None:
         """Poses and velocities of this very moment: `mj_step` leaves those before the last step."""

@@ -7,6 +7,7 @@ truth then speak of the very same body.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -63,6 +64,7 @@ class Shape:
         return float(np.linalg.norm(self.hull[:, :2], axis=1).max())
 
 
+@lru_cache(maxsize=512)
 def shape_named(name: str, size_m: tuple[float, ...], colour: Colour) -> Shape:
     """The shape of that name; raises BadParameter for an unknown one or an impossible size."""
     if name not in SHAPES:

@@ -6,9 +6,9 @@ from functools import lru_cache
 import numpy as np
 
 from vision_robot.errors import BadParameter
-from vision_robot.geometry import SE3, Camera, pixel_grid
+from vision_robot.geometry import Camera, pixel_grid
 from vision_robot.sim.truth import TruthFrame
-from vision_robot.types import Array, Bool, Float
+from vision_robot.types import Array, Bool, Float, Int
 
 __all__ = ["TrueFlow", "true_flow"]
 
@@ -34,80 +34,92 @@ def true_flow(before: TruthFrame, after: TruthFrame) -> TrueFlow:
     if before.camera != after.camera:
         raise BadParameter("cameras of a flow", (before.camera, after.camera), "the same")
     camera = before.camera
-    shape = before.bodies.shape
-    flow = np.zeros((*shape, 2), dtype=np.float32)
-    reach = before.depth.astype(float)  # distance along the axis after the motion, in the other picture
-    rays = _rays(camera)
-    for body, motion in _motions(before, after).items():
-        at = np.nonzero(before.bodies == body)
-        moved = _moved(rays[at], before.depth[at], motion)
-        flow[at] = camera.project(moved) - np.stack(at[::-1], axis=-1)
-        reach[at] = moved[:, 2]
-    flow[np.isnan(before.depth)] = np.nan
-    return TrueFlow(flow, _hidden(before, after, flow, reach))
+    height, width = before.bodies.shape
+    moves, R, t = _motions(before, after)
+    body = before.bodies.ravel()
+    at = np.flatnonzero(moves[body])
+    mine = body[at]
+    moved = _moved(_rays(camera)[at], before.depth.ravel()[at], R, t, mine)
+    flow = np.zeros((height * width, 2), dtype=np.float32)
+    row, column = np.divmod(at, width)
+    flow[at] = camera.project(moved) - np.stack([column, row], axis=-1)
+    unseen = np.isnan(before.depth.ravel())
+    if unseen.any():
+        flow[unseen] = np.nan
+    reach = before.depth.ravel().copy()
+    reach[at] = moved[:, 2]
+    # Where nothing moves and the same body is still seen, nothing needs to be asked.
+    asked = np.flatnonzero((moves[body] | (after.bodies.ravel() != body)) & ~unseen)
+    hidden = unseen
+    hidden[asked] = _hidden(after, asked, body[asked], flow[asked], reach[asked])
+    return TrueFlow(flow.reshape(height, width, 2), hidden.reshape(height, width))
 
 
-def _motions(before: TruthFrame, after: TruthFrame) -> dict[int, SE3]:
-    """cam_after_from_cam_before of the points of each body in the picture that moves against the camera.
+def _motions(
+    before: TruthFrame, after: TruthFrame
+) -> tuple[Bool[Array, "bodies+1"], Float[Array, "bodies+1 3 3"], Float[Array, "bodies+1 3"]]:
+    """Which bodies move against the camera, and cam_after_from_cam_before of the points of each.
 
-    Body 0 is what is infinitely far away.
+    Body 0 is what is infinitely far away: it moves as the camera does.
     """
-    motions = {}
-    seen = np.flatnonzero(np.bincount(before.bodies.ravel(), minlength=1))
     camera_motion = after.cam_from_station @ before.cam_from_station.inverse()
-    for body in seen.tolist():
-        motion = camera_motion
-        if body:
-            motion = after.cam_from_body[body - 1] @ before.cam_from_body[body - 1].inverse()
-        moves = motion.rotation - np.eye(3), motion.translation
-        if max(np.abs(part).max() for part in moves) > 1e-12:
-            motions[body] = motion
-    return motions
+    motion = after.cam_from_body @ before.cam_from_body.inverse()
+    R = np.concatenate([camera_motion.rotation[None], motion.rotation])
+    t = np.concatenate([camera_motion.translation[None], motion.translation])
+    change = np.maximum(np.abs(R - np.eye(3)).max(axis=(1, 2)), np.abs(t).max(axis=1))
+    return change > 1e-12, R, t
 
 
 @lru_cache(maxsize=2)
-def _rays(camera: Camera) -> Float[Array, "height width 3"]:
-    """Directions through the pixels' centres, of length 1 along the optical axis where they point ahead."""
-    rays = camera.unproject(pixel_grid(camera.width, camera.height))
+def _rays(camera: Camera) -> Float[Array, "pixels 3"]:
+    """Directions through the pixels' centres, 1 along the optical axis, row by row."""
+    rays = camera.unproject(pixel_grid(camera.width, camera.height)).reshape(-1, 3)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return rays / rays[..., 2:]
+        return rays / rays[:, 2:]
 
 
-def _moved(rays: Float[Array, "n 3"], depth: Float[Array, "n"], motion: SE3) -> Float[Array, "n 3"]:
-    """Points at `depth` along the rays after the motion; those infinitely far away only turn."""
-    far = np.isinf(depth)
-    points = rays * np.where(far, 1.0, depth)[:, None]
-    moved = points @ motion.rotation.T
-    moved[~far] += motion.translation
-    moved[far] *= 1e9
+def _moved(
+    rays: Float[Array, "n 3"],
+    depth: Float[Array, "n"],
+    R: Float[Array, "bodies+1 3 3"],
+    t: Float[Array, "bodies+1 3"],
+    body: Int[Array, "n"],
+) -> Float[Array, "n 3"]:
+    """Points at `depth` along the rays after their bodies' motions; those infinitely far away only turn."""
+    moved = np.empty_like(rays)
+    for one in np.flatnonzero(np.bincount(body, minlength=1)).tolist():
+        mine = body == one
+        points = rays[mine]
+        if one:
+            moved[mine] = (points * depth[mine, None]) @ R[one].T + t[one]
+        else:
+            moved[mine] = 1e9 * points @ R[one].T
     return moved
 
 
 def _hidden(
-    before: TruthFrame,
     after: TruthFrame,
-    flow: Float[Array, "height width 2"],
-    reach: Float[Array, "height width"],
-) -> Bool[Array, "height width"]:
-    """Which points the other picture does not show."""
+    at: Int[Array, "n"],
+    body: Int[Array, "n"],
+    flow: Float[Array, "n 2"],
+    reach: Float[Array, "n"],
+) -> Bool[Array, "n"]:
+    """Which of the points that come from the pixels `at`, `reach` away after the motion, are not shown."""
     assert after.depth is not None
-    height, width = before.bodies.shape
-    camera = before.camera
-    hidden = np.isnan(flow[..., 0])
-    # Where nothing moves and the same body is still seen, nothing is asked.
-    row, column = np.nonzero(~hidden & (flow.any(axis=-1) | (after.bodies != before.bodies)))
-    body, distance = before.bodies[row, column], reach[row, column]
-    u, v = (flow[row, column] + np.stack([column, row], axis=-1)).T
-    inside = (u >= -0.5) & (u <= width - 0.5) & (v >= -0.5) & (v <= height - 0.5)
-    left, top = (np.floor(np.where(inside, x, 0)).astype(np.int32) for x in (u, v))
+    height, width = after.bodies.shape
+    row, column = np.divmod(at, width)
+    with np.errstate(invalid="ignore"):
+        u, v = column + flow[:, 0], row + flow[:, 1]
+        inside = (u >= -0.5) & (u <= width - 0.5) & (v >= -0.5) & (v <= height - 0.5)
+    left, top = (np.floor(np.where(inside, x, 0)).astype(np.intp) for x in (u, v))
     # How far one pixel's width reaches at that distance: slanted surfaces differ by about so much.
-    tolerance = np.abs(distance) / min(camera.fx, camera.fy)
-    shown = np.zeros(len(row), dtype=bool)
+    tolerance = np.abs(reach) / min(after.camera.fx, after.camera.fy)
+    shown = np.zeros(len(at), dtype=bool)
+    bodies, depths = after.bodies.ravel(), after.depth.ravel()
     for du in (0, 1):
         for dv in (0, 1):
-            there = np.clip(top + dv, 0, height - 1), np.clip(left + du, 0, width - 1)
+            there = np.clip(top + dv, 0, height - 1) * width + np.clip(left + du, 0, width - 1)
             with np.errstate(invalid="ignore"):
-                near = np.abs(after.depth[there] - distance) <= tolerance
-            shown |= (after.bodies[there] == body) & (near | (body == 0))
-    hidden[row, column] = ~(inside & shown)
-    return hidden
+                near = np.abs(depths[there] - reach) <= tolerance
+            shown |= (bodies[there] == body) & (near | (body == 0))
+    return ~(inside & shown)
