@@ -9,7 +9,7 @@ from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.gl import load_mujoco
 from vision_robot.types import Array, Float, Image, Int
 
-__all__ = ["Canvas"]
+__all__ = ["Canvas", "Region"]
 
 # mujoco's own classes, which carry no type information.
 MjModel: TypeAlias = Any
@@ -17,6 +17,9 @@ MjData: TypeAlias = Any
 MjvGLCamera: TypeAlias = Any
 MjrContext: TypeAlias = Any
 MjrRect: TypeAlias = Any
+
+Region: TypeAlias = tuple[int, int, int, int]
+"""A rectangle of a picture: first column, first row, columns, rows."""
 
 
 class Canvas:
@@ -43,11 +46,23 @@ class Canvas:
         self._shown = np.array(self._options.geomgroup)
         self._buffer("colours")
 
-    def colours(self, face: Camera, world_from_cam: SE3) -> Image:
-        """Red-green-blue picture, its lowest row first as OpenGL has it."""
-        rect = self._draw("colours", face, world_from_cam, ())
-        rgb = np.empty((rect.height, rect.width, 3), dtype=np.uint8)
-        self._mujoco.mjr_readPixels(rgb, None, rect, self._buffers["colours"])
+    def colours(
+        self,
+        face: Camera,
+        world_from_cam: SE3,
+        *,
+        hidden_groups: tuple[int, ...] = (),
+        region: Region | None = None,
+    ) -> Image:
+        """Red-green-blue picture, or the `region` of it, its lowest row first as OpenGL has it."""
+        left, top, columns, rows = region or (0, 0, face.width, face.height)
+        name = "colours" if region is None else "region"
+        # The whole picture's view port, shifted: what lies outside the small buffer is not drawn.
+        view = self._mujoco.MjrRect(-left, -(face.height - top - rows), face.width, face.height)
+        self._draw(name, face, world_from_cam, hidden_groups, view, (columns, rows))
+        rgb = np.empty((rows, columns, 3), dtype=np.uint8)
+        rect = self._mujoco.MjrRect(0, 0, columns, rows)
+        self._mujoco.mjr_readPixels(rgb, None, rect, self._buffers[name])
         return rgb
 
     def numbers(
@@ -58,7 +73,8 @@ class Canvas:
         0 is nothing, `objects` tells about the others; depth is infinite where nothing is hit. Geoms
         of `hidden_groups` are left out.
         """
-        rect = self._draw("numbers", face, world_from_cam, hidden_groups)
+        rect = self._mujoco.MjrRect(0, 0, face.width, face.height)
+        self._draw("numbers", face, world_from_cam, hidden_groups, rect, (face.width, face.height))
         rgb = np.empty((rect.height, rect.width, 3), dtype=np.uint8)
         raw = np.empty((rect.height, rect.width), dtype=np.float32) if depth else None
         self._mujoco.mjr_readPixels(rgb, raw, rect, self._buffers["numbers"])
@@ -94,8 +110,8 @@ class Canvas:
             mj, quality = self._mujoco, self._model.vis.quality
             before = int(quality.offsamples), int(quality.shadowsize)
             # What a buffer is like is read from the model when it is made.
-            quality.offsamples = self._multisamples if name == "colours" else 0
-            if not (self._shadows and name == "colours"):
+            quality.offsamples = 0 if name == "numbers" else self._multisamples
+            if not self._shadows or name == "numbers":
                 quality.shadowsize = 0
             buffer = mj.MjrContext(self._model, mj.mjtFontScale.mjFONTSCALE_100.value)
             quality.offsamples, quality.shadowsize = before
@@ -103,15 +119,25 @@ class Canvas:
             self._buffers[name] = buffer
         return self._buffers[name]
 
-    def _draw(self, name: str, face: Camera, world_from_cam: SE3, hidden_groups: tuple[int, ...]) -> MjrRect:
+    def _draw(
+        self,
+        name: str,
+        face: Camera,
+        world_from_cam: SE3,
+        hidden_groups: tuple[int, ...],
+        view: MjrRect,
+        size: tuple[int, int],
+    ) -> None:
+        """Draw what a view port shows of the picture into a buffer of at least `size`."""
         if self._gl is None:
             raise BadParameter("renderer", "closed", "open: use it inside its with block")
         mj, scene = self._mujoco, self._scene
         self._gl.make_current()
         buffer = self._buffer(name)
-        if face.width > buffer.offWidth or face.height > buffer.offHeight:
-            size = (max(face.width, buffer.offWidth), max(face.height, buffer.offHeight))
-            mj.mjr_resizeOffscreen(*size, buffer)
+        if name == "region":
+            mj.mjr_resizeOffscreen(*size, buffer)  # what is larger would be drawn too
+        elif size[0] > buffer.offWidth or size[1] > buffer.offHeight:
+            mj.mjr_resizeOffscreen(max(size[0], buffer.offWidth), max(size[1], buffer.offHeight), buffer)
         mj.mjr_setBuffer(mj.mjtFramebuffer.mjFB_OFFSCREEN.value, buffer)
         coded = name == "numbers"
         flags, flag = scene.flags, mj.mjtRndFlag
@@ -128,9 +154,7 @@ class Canvas:
         for light in scene.lights[: scene.nlight]:
             if light.headlight:
                 light.pos, light.dir = world_from_cam.translation, world_from_cam.rotation[:, 2]
-        rect = mj.MjrRect(0, 0, face.width, face.height)
-        mj.mjr_render(rect, scene, buffer)
-        return rect
+        mj.mjr_render(view, scene, buffer)
 
     def _metres(self, raw: Float[Array, "rows columns"]) -> Float[Array, "rows columns"]:
         eye = self._scene.camera[0]

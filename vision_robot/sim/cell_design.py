@@ -46,6 +46,8 @@ class Item:
     def __post_init__(self) -> None:
         from vision_robot.sim.shapes import shape_named
 
+        for name in ("size_m", "colour"):  # lists come from TOML
+            object.__setattr__(self, name, tuple(getattr(self, name)))
         shape_named(self.shape, self.size_m, self.colour)  # refuses what cannot be made
         _colour(f"colour of {self.name}", self.colour)
         if self.fixed and self.path is not None:

@@ -21,7 +21,9 @@ __all__ = [
     "ITEM",
     "LABEL",
     "LABEL_THICKNESS_M",
-    "THINGS",
+    "FIXED",
+    "FLOOR_BELOW_M",
+    "MOVING",
     "build",
     "quaternion",
     "resting",
@@ -34,11 +36,12 @@ Picture: TypeAlias = UInt8[Array, "rows columns 3"]
 
 OWN_ARM = Path(vision_robot.arm.__file__).parent / "models" / "column_arm.xml"
 
-BACKGROUND, THINGS, ARMS, COLLIDERS = 0, 1, 2, 3
-"""Groups of geoms: table and floor; things on the table; arms as drawn; what collides and is not drawn."""
+BACKGROUND, MOVING, FIXED, COLLIDERS = 0, 1, 2, 3
+"""Groups of geoms: table, belt and floor; what can move; what stands; what collides and is not drawn."""
 ITEM, ARM = "item/", "arm/"
 """Beginnings of names."""
 TABLE, BELT, LABEL = "table", "belt", "label"
+BACKGROUNDS = (TABLE, TABLE + "1", "belt_seen", "floor")
 
 TABLE_THICKNESS_M = 0.03
 LABEL_THICKNESS_M = 0.002
@@ -88,9 +91,21 @@ def build(design: CellDesign) -> MjModel:
     for name, picture in pictures.items():
         _add_picture(mj, spec, name, picture)
     model = spec.compile()
+    _sort_into_groups(model)
     for name, picture in pictures.items():
         _paint(model, name, picture)
     return model
+
+
+def _sort_into_groups(model: MjModel) -> None:
+    """What is drawn and is not background goes by whether it can move, however a file has it."""
+    bodies = model.geom_bodyid
+    mocap = model.body_mocapid[model.body_rootid[bodies]] >= 0
+    moves = (model.body_weldid[bodies] != 0) | mocap
+    names = [model.geom(i).name for i in range(model.ngeom)]
+    background = np.array([name in BACKGROUNDS for name in names])
+    drawn = (model.geom_group < COLLIDERS) & ~background
+    model.geom_group[drawn] = np.where(moves, MOVING, FIXED)[drawn]
 
 
 def quaternion(rotation: Float[Array, "3 3"]) -> Float[Array, "4"]:
@@ -252,7 +267,7 @@ def _add_item(mj: Any, spec: MjSpec, item: Item, base_from_station: SE3) -> None
             type=mj.mjtGeom.mjGEOM_MESH,
             meshname=name,
             material=name,
-            group=THINGS,
+            group=MOVING,
             contype=0,
             conaffinity=0,
             mass=0,
@@ -299,9 +314,6 @@ def _add_arm(mj: Any, spec: MjSpec, mount: ArmMount) -> None:
         raise BadParameter("arm", str(path), 'an MJCF file with a site "tool" between the fingers')
     if mount.label is not None:
         _add_label(mj, arm, tool.parent, mount, mount.label)
-    for geom in arm.geoms:
-        if geom.group == BACKGROUND:  # where MJCF files that know no groups have all their geoms
-            geom.group = ARMS
     spec.attach(arm, frame=spec.worldbody.add_frame(), prefix=ARM)
 
 
@@ -322,5 +334,5 @@ def _add_label(mj: Any, arm: MjSpec, hand: MjsBody, mount: ArmMount, colour: Col
         mass=0.004,
         contype=0,
         conaffinity=0,
-        group=THINGS,
+        group=MOVING,
     )
