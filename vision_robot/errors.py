@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 __all__ = [
+    "BadArm",
     "BadCameraFile",
     "BadCornerFile",
     "BadInput",
@@ -21,6 +22,7 @@ __all__ = [
     "CommandRefused",
     "DegenerateViews",
     "LinkMismatch",
+    "MissingLimits",
     "MissingOpenGL",
     "MixedImageSizes",
     "NoAnswer",
@@ -213,6 +215,21 @@ class LinkMismatch(BadInput):
             f"{port}: {what} is {there} at the microcontroller and {here} here: "
             "give the arm it was built for, or export and flash it again"
         )
+class BadArm(BadInput):
+    """A file describes no arm that can be solved."""
+
+    def __init__(self, path: object, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"{path} is not an arm this tool can use: {why}")
+
+
+class MissingLimits(BadArm):
+    """Joints that slide have no limits."""
+
+    def __init__(self, path: object, joints: Sequence[str]):
+        self.joints = tuple(joints)
+        why = f"joint(s) {', '.join(joints)} slide without limits"
+        super().__init__(path, f"{why}: write them into the file or give --limit {joints[0]}=0..0.4m")
 
 
 class UnwritableOutput(BadInput):
