@@ -18,8 +18,9 @@ class Precision:
     suffix: str
     """Of constants and of math.h's functions: without it C computes in double."""
     bytes: int
-    tolerance: float
-    """Relative to which an answer in this precision can be trusted [m per m, rad]."""
+    reached_m: float
+    reached_rad: float
+    """Within these of the goal an answer counts as reached."""
 
     def literal(self, value: float) -> str:
         """`value` as a constant of this type, which reads back as the same number."""
@@ -33,8 +34,8 @@ class Precision:
         return name + self.suffix
 
 
-SINGLE = Precision("single", "float", "f", 4, 2e-6)
-DOUBLE = Precision("double", "double", "", 8, 1e-12)
+SINGLE = Precision("single", "float", "f", 4, 1e-5, 1e-4)
+DOUBLE = Precision("double", "double", "", 8, 1e-6, 1e-6)
 PRECISIONS = {one.name: one for one in (SINGLE, DOUBLE)}
 
 

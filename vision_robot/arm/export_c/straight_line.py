@@ -43,6 +43,11 @@ class StraightLine:
     operations: Counter[str]
     """How often each of add, mul, div, sqrt, sin, atan2, ... is done in a call."""
 
+    @property
+    def functions(self) -> set[str]:
+        """math.h's functions that are called, without suffix."""
+        return set(self.operations) & set(FUNCTIONS.values())
+
 
 def straight_line(
     function: "casadi.Function",

@@ -1,5 +1,6 @@
-#include "vr_arm.h"
+#include <stdint.h>
 
+#include "vr_arm.h"
 #include "vr_kernels.h"
 
 void vr_forward(const vr_real q[VR_JOINTS], vr_real base_from_tool[12]) { vr_kernel_forward(q, base_from_tool); }
@@ -30,10 +31,18 @@ void vr_pose_from_rotvec(const vr_real position[3], const vr_real rotvec[3], vr_
 
 static int within(const vr_real error[2]) { return error[0] <= VR_TOLERANCE_M && error[1] <= VR_TOLERANCE_RAD; }
 
-static vr_real cost(const vr_real error[2])
+/* Take whole turns off turning joints where that brings them nearer to `now` and not past a limit. */
+static void toward(const vr_real *now, vr_real *q)
 {
-    const vr_real angle = VR_LENGTH * error[1];
-    return error[0] * error[0] + angle * angle;
+    int i;
+    for (i = 0; i < VR_JOINTS; i++) {
+        if (vr_slides[i])
+            continue;
+        if (q[i] - now[i] > VR_TURN / 2 && q[i] - VR_TURN >= vr_lower[i])
+            q[i] -= VR_TURN;
+        else if (now[i] - q[i] > VR_TURN / 2 && q[i] + VR_TURN <= vr_upper[i])
+            q[i] += VR_TURN;
+    }
 }
 
 static void copy(const vr_real *from, vr_real *to)
@@ -48,10 +57,11 @@ static void copy(const vr_real *from, vr_real *to)
 /* Bring a joint inside its limits, by whole turns if it turns; 0 where that cannot be. */
 static int into_limits(int i, vr_real *q)
 {
-    if (!vr_slides[i]) {
-        while (*q < vr_lower[i] - VR_SLACK)
+    int turns;
+    for (turns = 0; turns < 4 && !vr_slides[i]; turns++) {
+        if (*q < vr_lower[i] - VR_SLACK)
             *q += VR_TURN;
-        while (*q > vr_upper[i] + VR_SLACK)
+        else if (*q > vr_upper[i] + VR_SLACK)
             *q -= VR_TURN;
     }
     if (!(*q >= vr_lower[i] - VR_SLACK && *q <= vr_upper[i] + VR_SLACK)) /* so written, NaN is outside */
@@ -66,35 +76,64 @@ static int into_limits(int i, vr_real *q)
 int vr_branches(const vr_real base_from_tool[12], vr_real q[VR_BRANCHES][VR_JOINTS])
 {
     vr_real all[VR_BRANCHES * VR_JOINTS], error[2];
-    int branch, i, inside, found = 0;
+    int branch, i, good, found = 0;
     vr_kernel_branches(base_from_tool, all);
     for (branch = 0; branch < VR_BRANCHES; branch++) {
-        inside = 1;
-        for (i = 0; i < VR_JOINTS; i++) {
+        good = 1;
+        for (i = 0; i < VR_JOINTS && good; i++) {
             q[found][i] = all[branch * VR_JOINTS + i];
-            inside = inside && into_limits(i, &q[found][i]);
+            good = into_limits(i, &q[found][i]);
         }
-        if (!inside)
+        if (!good)
             continue;
         vr_kernel_error(q[found], base_from_tool, error);
-        if (within(error))
-            found++;
+        found += within(error);
     }
     return found;
 }
 
-#endif
+/* Squared distance between joint values, slides in units of the arm's length. */
+static vr_real apart(const vr_real *a, const vr_real *b)
+{
+    vr_real sum = 0, step;
+    int i;
+    for (i = 0; i < VR_JOINTS; i++) {
+        step = vr_slides[i] ? (a[i] - b[i]) / VR_LENGTH : a[i] - b[i];
+        sum += step * step;
+    }
+    return sum;
+}
 
-#if VR_NUMERIC
+int vr_solve(const vr_real base_from_tool[12], const vr_real now[VR_JOINTS], vr_real q[VR_JOINTS], vr_real error[2])
+{
+    vr_real branches[VR_BRANCHES][VR_JOINTS];
+    int found = vr_branches(base_from_tool, branches), best = 0, branch;
+    for (branch = 0; branch < found; branch++)
+        toward(now, branches[branch]);
+    for (branch = 1; branch < found; branch++)
+        if (apart(branches[branch], now) < apart(branches[best], now))
+            best = branch;
+    copy(found ? branches[best] : now, q);
+    vr_kernel_error(q, base_from_tool, error);
+    return found > 0;
+}
+
+#else
 
 /* The k-th of endless points that fill the joint ranges evenly (Roberts 2018, generalised golden ratio). */
-static void spread(unsigned long k, vr_real q[VR_JOINTS])
+static void spread(uint32_t k, vr_real q[VR_JOINTS])
 {
     int i;
     for (i = 0; i < VR_JOINTS; i++) {
-        const vr_real share = (vr_real)(((k * vr_golden[i]) >> 8) & 0xFFFFFFul) / 16777216;
+        const vr_real share = (vr_real)((uint32_t)(k * vr_golden[i]) >> 8) / 16777216;
         q[i] = vr_lower[i] + share * (vr_upper[i] - vr_lower[i]);
     }
+}
+
+static vr_real cost(const vr_real error[2])
+{
+    const vr_real angle = VR_LENGTH * error[1];
+    return error[0] * error[0] + angle * angle;
 }
 
 /* Descend from q; ends at the goal, or where it goes no farther. */
@@ -121,11 +160,36 @@ static int descend(const vr_real goal[12], vr_real q[VR_JOINTS], vr_real error[2
     return within(error);
 }
 
-#endif
-
 static void clamp(const vr_real *from, vr_real *to)
 {
     int i;
     for (i = 0; i < VR_JOINTS; i++)
         to[i] = from[i] < vr_lower[i] ? vr_lower[i] : from[i] > vr_upper[i] ? vr_upper[i] : from[i];
 }
+
+int vr_solve(const vr_real base_from_tool[12], const vr_real now[VR_JOINTS], vr_real q[VR_JOINTS], vr_real error[2])
+{
+    vr_real from[VR_JOINTS], trial[VR_JOINTS], trial_error[2];
+    int start, reached = 0;
+    clamp(now, from);
+    for (start = 0; start <= VR_STARTS + VR_SPREAD; start++) {
+        if (start == 0)
+            copy(from, trial);
+        else if (start <= VR_STARTS)
+            copy(vr_starts[start - 1], trial);
+        else
+            spread((uint32_t)(start - VR_STARTS), trial);
+        reached = descend(base_from_tool, trial, trial_error);
+        if (start == 0 || reached || cost(trial_error) < cost(error)) {
+            copy(trial, q);
+            error[0] = trial_error[0];
+            error[1] = trial_error[1];
+        }
+        if (reached)
+            break;
+    }
+    toward(from, q);
+    return reached;
+}
+
+#endif

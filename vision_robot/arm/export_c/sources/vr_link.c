@@ -164,16 +164,15 @@ static uint8_t read_joints(const uint8_t *p, vr_real joints[VR_JOINTS])
 /* Find joints for the pose that a POSE message asks for. */
 static uint8_t solve_pose(vr_link *link, const uint8_t *p, vr_real joints[VR_JOINTS])
 {
-    vr_real numbers[6], error[2];
-    vr_pose target;
+    vr_real numbers[6], goal[12], error[2];
     unsigned i;
     for (i = 0; i < 6; i++) {
         numbers[i] = (vr_real)get_float(p + 4 * i);
         if (!finite(numbers[i]))
             return VR_LINK_NOT_FINITE;
     }
-    vr_pose_from_rotvec(numbers, numbers + 3, &target);
-    i = (unsigned)vr_solve(&target, link->joints, joints, error);
+    vr_pose_from_rotvec(numbers, numbers + 3, goal);
+    i = (unsigned)vr_solve(goal, link->joints, joints, error);
     link->last_error[0] = (float)error[0];
     link->last_error[1] = (float)error[1];
     return i ? VR_LINK_DONE : VR_LINK_UNREACHABLE;
