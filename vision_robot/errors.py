@@ -29,6 +29,7 @@ __all__ = [
     "NoConvergence",
     "NoImages",
     "TooFewViews",
+    "UnknownStructure",
     "UnreadableImage",
     "UnwritableOutput",
     "VisionRobotError",
@@ -230,6 +231,18 @@ class MissingLimits(BadArm):
         self.joints = tuple(joints)
         why = f"joint(s) {', '.join(joints)} slide without limits"
         super().__init__(path, f"{why}: write them into the file or give --limit {joints[0]}=0..0.4m")
+
+
+class UnknownStructure(BadInput):
+    """An arm is of no kind whose joints are known in closed form."""
+
+    def __init__(self, joints: Sequence[str], pattern: str, reasons: dict[str, str]):
+        self.joints, self.pattern, self.reasons = tuple(joints), pattern, reasons
+        why = "; ".join(f"not {name}: {reason}" for name, reason in reasons.items())
+        super().__init__(
+            f"no closed form is known for joints {', '.join(joints)} ({pattern}): "
+            f"{why or 'no kind that is known has this order of joints'}; use the numeric solver"
+        )
 
 
 class UnwritableOutput(BadInput):
