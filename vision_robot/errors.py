@@ -216,6 +216,8 @@ class LinkMismatch(BadInput):
             f"{port}: {what} is {there} at the microcontroller and {here} here: "
             "give the arm it was built for, or export and flash it again"
         )
+
+
 class BadArm(BadInput):
     """A file describes no arm that can be solved."""
 
@@ -251,4 +253,3 @@ class UnwritableOutput(BadInput):
     def __init__(self, path: Path | str, why: str):
         self.path, self.why = str(path), why
         super().__init__(f"cannot write {path} ({why}): choose another place with -o")
-

@@ -1,4 +1,4 @@
-"""What the exported code costs: estimated from its operations, measured where an Arm compiler is installed."""
+"""What the exported code costs: estimated from its operations, measured where a compiler is installed."""
 
 import re
 import shutil
@@ -15,7 +15,7 @@ __all__ = ["COMPILER", "Cost", "cycles", "estimated", "measured"]
 COMPILER = "arm-none-eabi-gcc"
 
 CYCLES_SINGLE = {"add": 3, "mul": 3, "div": 17, "sqrt": 17, "select": 8, "fmin": 8, "fmax": 8, "fabs": 2}
-"""Cortex-M4F cycles of an operation with its loads and stores: Cortex-M4 TRM r0p1, table 7-1, plus about two."""
+"""Cycles of an operation on a Cortex-M4F (Cortex-M4 TRM r0p1, table 7-1), two more for loads and stores."""
 CALL_SINGLE = 120
 """Of a function of math.h: newlib's sinf, cosf, atan2f and their like, roughly."""
 CYCLES_DOUBLE, CALL_DOUBLE = 90, 2500
@@ -54,8 +54,8 @@ def estimated(operations: Counter[str], precision: Precision) -> Cost:
     return Cost("estimate", 1200 + per * operations.total(), 0, None)
 
 
-def measured(folder: Path, target: str) -> Cost | None:
-    """Compile the exported files for `target` and read what the compiler says; None where there is none."""
+def measured(folder: Path) -> Cost | None:
+    """Compile the exported files for their target and read what the compiler says; None without one."""
     if shutil.which(COMPILER) is None or shutil.which("make") is None:
         return None
     run = subprocess.run(["make", "size"], cwd=folder, capture_output=True, text=True, check=False)
@@ -73,7 +73,8 @@ def measured(folder: Path, target: str) -> Cost | None:
 CALLS = {
     "vr_solve": ("vr_branches", "descend", "vr_kernel_error"),
     "descend": ("vr_kernel_step",),
-    "vr_branches": ("vr_kernel_branches",),
+    "vr_branches": ("vr_kernel_branches", "polish", "vr_kernel_error"),
+    "polish": ("vr_kernel_step",),
 }
 """Who calls whom in vr_ik.c; what the compiler has inlined is missing from its list, and counts nothing."""
 

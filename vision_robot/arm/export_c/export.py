@@ -14,7 +14,7 @@ from vision_robot.arm.export_c.fingerprint import fingerprint
 from vision_robot.arm.export_c.precision import Precision, precision_named
 from vision_robot.arm.export_c.starts import Starts, covering_starts
 from vision_robot.arm.export_c.straight_line import StraightLine, straight_line
-from vision_robot.arm.export_c.words import rendered, source, words_of
+from vision_robot.arm.export_c.words import cases, polish_steps, rendered, source, words_of
 from vision_robot.arm.model import Arm
 from vision_robot.arm.task import Task
 from vision_robot.errors import BadParameter, UnknownStructure
@@ -31,8 +31,8 @@ __all__ = ["METHODS", "TARGETS", "Export", "export_c"]
 METHODS = ("auto", "closed-form", "numeric")
 TARGETS = {"cortex-m4f": "-mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16"}
 """What the Makefile compiles for, and the compiler's words for it."""
-PLAIN = ("vr_ik.c", "vr_link.h", "vr_link.c", "example.c", "filter.c", "receiver.c", "qemu_user.c", "Makefile")
-WRITTEN = ("vr_arm.h", "vr_kernels.h", "selftest.c", "README.md")
+PLAIN = ("vr_ik.c", "vr_link.h", "vr_link.c", "example.c", "filter.c", "receiver.c", "qemu_user.c")
+WRITTEN = ("vr_arm.h", "vr_kernels.h", "selftest.c", "Makefile", "README.md")
 
 
 @dataclass(frozen=True)
@@ -82,27 +82,31 @@ def export_c(
     chain = _representable(arm.chain, real)
     closed = _closed_form(arm, task, method)
     kernels = [_kernel(symbolic.base_from_tool(chain), "vr_kernel_forward", ["q"], ["pose"], real)]
+    step = _kernel(symbolic.lm_step(chain, task), "vr_kernel_step", ["q", "goal"], ["next", "error"], real)
     starts = None
     if closed is None:
-        step = _kernel(symbolic.lm_step(chain, task), "vr_kernel_step", ["q", "goal"], ["next", "error"], real)
         kernels.append(step)
         starts = covering_starts(chain, task, seed=seed)
-        mean, most = (round(cycles(step.operations, real) * n) for n in (starts.steps_mean, starts.steps_most))
+        mean, most = (
+            round(cycles(step.operations, real) * n) for n in (starts.steps_mean, starts.steps_most)
+        )
     else:
         every = _kernel(_part(closed.function, "branches", 0), "vr_kernel_branches", ["goal"], ["q"], real)
         error = _kernel(_error(chain, task), "vr_kernel_error", ["q", "goal"], ["error"], real)
-        kernels += [every, error]
-        mean = most = cycles(every.operations + error.operations, real)
+        kernels += [every, error] + [step] * (polish_steps(closed) > 0)
+        # Every branch inside the limits is checked, and the answer once more.
+        each = cycles(error.operations, real) + polish_steps(closed) * cycles(step.operations, real)
+        most = cycles(every.operations, real) + (closed.branches + 1) * each
+        mean = most
     one = kernels[1].operations
-    fill = words_of(
-        arm, chain, real, task, kernels, starts=starts, closed=closed, cycles=mean, seed=seed, target=TARGETS[target]
-    )
+    words = {"cycles": mean, "target": TARGETS[target], "cases": cases(arm.chain, real, seed)}
+    fill = words_of(arm, chain, real, task, kernels, starts=starts, closed=closed) | words
     for name in PLAIN:
         write_text(folder / name, source(name))
     for name in WRITTEN:
         write_text(folder / name, rendered(name, fill))
     total = sum((kernel.operations for kernel in kernels), Counter())
-    cost = measured(folder, target) or estimated(total, real)
+    cost = measured(folder) or estimated(total, real)
     return Export(
         folder=folder,
         files=(*WRITTEN, *PLAIN),
@@ -124,8 +128,10 @@ def _closed_form(arm: Arm, task: Task, method: str) -> "ClosedForm | None":
     """The arm's closed form where it is to be taken."""
     from vision_robot.arm.closed_form import closed_form_of
 
-    if method == "numeric":
+    if method == "numeric" or (method == "auto" and task is not Task.POSE):
         return None
+    if task is not Task.POSE:
+        raise BadParameter("task for a closed form", task.value, "pose; the numeric method does the others")
     try:
         return closed_form_of(arm.chain)
     except UnknownStructure:

@@ -36,7 +36,7 @@ class Starts:
 
 
 def covering_starts(chain: SerialChain, task: Task, *, goals: int = 2000, seed: int = 0) -> Starts:
-    """Choose starts greedily until each of `goals` goals is reached from one of them, then try them on as many others.
+    """Choose starts greedily until every one of `goals` goals is reached, then try them on as many others.
 
     The descent is the one of vr_ik.c, so that what holds here holds there.
     """

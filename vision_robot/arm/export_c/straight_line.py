@@ -118,5 +118,7 @@ class _Writer:
         if op in FUNCTIONS:
             return f"{self.precision.function(FUNCTIONS[op])}({', '.join(operands)})"
         if op not in OTHERS:
-            raise BadParameter("operation to write as C", op, ", ".join([*INFIX, *COMPARISONS, *FUNCTIONS, *OTHERS]))
+            raise BadParameter(
+                "operation to write as C", op, ", ".join([*INFIX, *COMPARISONS, *FUNCTIONS, *OTHERS])
+            )
         return OTHERS[op].format(*operands, zero=zero, one=one)

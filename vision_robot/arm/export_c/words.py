@@ -19,7 +19,7 @@ from vision_robot.geometry import SerialChain
 if TYPE_CHECKING:
     from vision_robot.arm.closed_form import ClosedForm
 
-__all__ = ["SPREAD", "rendered", "source", "words_of"]
+__all__ = ["SPREAD", "cases", "polish_steps", "rendered", "source", "words_of"]
 
 SPREAD = 60
 """Starts beyond the table before a goal counts as out of reach."""
@@ -49,6 +49,11 @@ def rendered(name: str, fill: Mapping[str, Any]) -> str:
     return engine.from_string(source(f"{name}.j2")).render(fill)
 
 
+def polish_steps(closed: "ClosedForm | None") -> int:
+    """Steps that an answer of the closed form needs: none where the arm is exactly of its kind."""
+    return 0 if closed is None or closed.exact else 3
+
+
 def words_of(
     arm: Arm,
     chain: SerialChain,
@@ -58,11 +63,9 @@ def words_of(
     *,
     starts: Starts | None,
     closed: "ClosedForm | None",
-    cycles: int,
-    seed: int,
-    target: str,
 ) -> dict[str, Any]:
-    """All that the templates ask for; `chain` has its limits in the target's precision."""
+    """What the templates ask for about the arm; `chain` has its limits in the target's precision."""
+    method = "damped steps from several starts" if closed is None else f"closed form, {closed.structure}"
     numbers = [real.literal(value) for value in chain.limits.ravel()]
     used = {name for kernel in kernels for name in kernel.functions} | {"sqrt", "sin", "cos"}
     return {
@@ -73,8 +76,9 @@ def words_of(
         "task_words": TASKS[task],
         "numeric": closed is None,
         "structure": "" if closed is None else closed.structure,
+        "polish": polish_steps(closed),
         "branches": 0 if closed is None else closed.branches,
-        "method_words": "damped steps from several starts" if closed is None else f"closed form, {closed.structure}",
+        "method_words": method,
         "choice_words": "from the nearest start that leads there, `now` first"
         if closed is None
         else "the branch nearest to `now`",
@@ -84,8 +88,6 @@ def words_of(
         "fingerprint": fingerprint(arm.chain),
         "tolerance_m": real.reached_m,
         "tolerance_rad": real.reached_rad,
-        "cycles": cycles,
-        "target": target,
         "length": symbolic.length_scale(chain),
         "lower": numbers[0::2],
         "upper": numbers[1::2],
@@ -98,7 +100,6 @@ def words_of(
         "goals": 0 if starts is None else starts.goals,
         "golden": [f"{step}u" for step in golden_steps(len(chain))],
         "kernels": [kernel.code for kernel in kernels],
-        "cases": _cases(arm.chain, real, seed),
     }
 
 
@@ -107,12 +108,17 @@ def _joint(chain: SerialChain, i: int) -> dict[str, str]:
     if chain.slides[i]:
         return {"name": chain.joint_names[i], "moves": "slides", "range": f"{low:.6g} ... {high:.6g} m"}
     degrees = f"({np.degrees(low):.6g} ... {np.degrees(high):.6g} deg)"
-    return {"name": chain.joint_names[i], "moves": "turns ", "range": f"{low:.6g} ... {high:.6g} rad {degrees}"}
+    return {
+        "name": chain.joint_names[i],
+        "moves": "turns ",
+        "range": f"{low:.6g} ... {high:.6g} rad {degrees}",
+    }
 
 
-def _cases(chain: SerialChain, real: Precision, seed: int) -> list[list[str]]:
+def cases(chain: SerialChain, real: Precision, seed: int) -> list[list[str]]:
     """Joints and the pose they give, by numpy's kinematics and not by the expressions that are exported."""
     rng = np.random.default_rng(seed)
-    inside = chain.limits.mean(axis=1) + 0.499 * np.diff(chain.limits)[:, 0] * rng.uniform(-1, 1, (CASES, len(chain)))
+    half = 0.499 * np.diff(chain.limits)[:, 0]  # a hair inside, whatever the rounding
+    inside = chain.limits.mean(axis=1) + half * rng.uniform(-1, 1, (CASES, len(chain)))
     pose = chain.base_from_tool(inside).as_matrix()[:, :3].reshape(CASES, 12)
     return [[real.literal(x) for x in row] for row in np.hstack([inside, pose])]

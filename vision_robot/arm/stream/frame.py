@@ -2,10 +2,11 @@
 
     0x00  COBS( kind u8 | session u16 | sequence u16 | payload | CRC-32 u32 )  0x00
 
-Numbers are little-endian. The checksum is the CRC-32 of Ethernet and zlib (reflected polynomial 0xEDB88320), taken
-over everything before it. Sixteen bits would let one damaged frame in 65 536 through, which is a wrong movement
-every few days on a noisy line at 100 commands a second; thirty-two let through one in 4.3 thousand million, and none with
-up to four wrong bits in frames as short as these. The zero before a frame ends whatever a disturbance left on the line.
+Numbers are little-endian. The checksum is the CRC-32 of Ethernet and zlib (reflected polynomial
+0xEDB88320), taken over everything before it. Of frames damaged at random sixteen bits would let one in
+65 536 through, which is a wrong movement every week where one frame in a thousand is damaged at 100
+commands a second; thirty-two let through one in 4.3 thousand million. The zero before a frame ends
+whatever a disturbance left on the line.
 """
 
 import struct
@@ -46,7 +47,8 @@ class Frame:
         body, check = data[: -CHECK.size], data[-CHECK.size :]
         if zlib.crc32(body) != CHECK.unpack(check)[0]:
             return None
-        return cls(*HEAD.unpack_from(body), body[HEAD.size :])
+        kind, session, sequence = HEAD.unpack_from(body)
+        return cls(kind, session, sequence, body[HEAD.size :])
 
 
 class FrameReader:

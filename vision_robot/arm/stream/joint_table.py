@@ -33,9 +33,13 @@ class JointTable:
     def __post_init__(self) -> None:
         time, q = np.asarray(self.time_s, dtype=float), np.asarray(self.q, dtype=float)
         if q.shape != (len(time), len(self.joint_names)):
-            raise BadTable("joint table", f"{q.shape} values for {len(time)} times x {len(self.joint_names)} joints")
+            raise BadTable(
+                "joint table", f"{q.shape} values for {len(time)} times x {len(self.joint_names)} joints"
+            )
         if not (np.isfinite(time).all() and (time >= 0).all() and (np.diff(time) > 0).all()):
-            raise BadTable("joint table", f"its times must rise from 0 s or later; row {_first_bad(time)} does not")
+            raise BadTable(
+                "joint table", f"its times must rise from 0 s or later; row {_first_bad(time)} does not"
+            )
         if not np.isfinite(q).all():
             row = int(np.flatnonzero(~np.isfinite(q).all(axis=1))[0]) + 1
             raise BadTable("joint table", f"row {row} has a value that is not finite")
@@ -106,9 +110,7 @@ class JointTable:
         return cls.of(chain, time, values[:, 1:])
 
 
-def _column(
-    header: Sequence[str], joint: str, scales: dict[str, float], source: object
-) -> tuple[int, float]:
+def _column(header: Sequence[str], joint: str, scales: dict[str, float], source: object) -> tuple[int, float]:
     """Where a joint's column is, and the factor to SI."""
     for unit, scale in scales.items():
         if f"{joint}_{unit}" in header:

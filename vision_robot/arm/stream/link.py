@@ -77,7 +77,7 @@ class Link:
 
     def open(self) -> Welcome:
         """Shake hands. Raises NoAnswer, or LinkMismatch where protocol or arm differ."""
-        # A new number each time, so that nothing of an earlier session can be taken for this one; zero means none.
+        # A new number each time, so that nothing of an earlier session counts in this one; zero means none.
         self.session, self.sequence = 1 + secrets.randbelow(0xFFFF), 0
         payload = hello(self.joints, self.fingerprint, self.silence_s)
         frame, _ = self._ask(
@@ -118,7 +118,9 @@ class Link:
         )
         expected = Status.STOPPED if kind == Kind.STOP else Status.DONE
         if answer.status != expected:
-            raise CommandRefused(self.port.name, kind.name, self.sequence, answer.status.name, answer.status.meaning)
+            raise CommandRefused(
+                self.port.name, kind.name, self.sequence, answer.status.name, answer.status.meaning
+            )
         return replace(answer, tries=tries)
 
     def _ask(self, frame: Frame, read: Callable[[Frame], Reply | None]) -> tuple[Reply, int]:

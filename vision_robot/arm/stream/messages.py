@@ -1,7 +1,7 @@
 """What computer and microcontroller say to each other, and how it is laid out in a frame's payload.
 
-The computer asks, the microcontroller answers each question once. Lengths are in metres, angles in radians, numbers are
-little-endian; reals are IEEE singles (0.03 µm at half a metre).
+The computer asks, the microcontroller answers each question. Lengths are in metres, angles in radians,
+numbers are little-endian; reals are IEEE singles (0.03 µm at half a metre).
 
 | kind | from | payload |
 |---|---|---|
@@ -10,9 +10,9 @@ little-endian; reals are IEEE singles (0.03 µm at half a metre).
 | 3 POSE | computer | time u32 [ms], position f32 × 3 [m], rotation vector f32 × 3 [rad] of base_from_tool |
 | 4 STOP | computer | none |
 | 0x81 WELCOME | microcontroller | status u8, version u8, joints u8, fingerprint u32, joints f32 × n |
-| 0x82 ANSWER | microcontroller | status u8, joints f32 × n, position error f32 [m], orientation error f32 [rad] |
+| 0x82 ANSWER | microcontroller | status u8, joints f32 × n, distance f32 [m] and angle f32 [rad] to a pose |
 
-HELLO and WELCOME keep their first three and four bytes in every version, so that two versions can still tell each other so.
+HELLO keeps its first byte and WELCOME its first two in every version, so that both sides can tell.
 """
 
 import struct

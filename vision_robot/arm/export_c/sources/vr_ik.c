@@ -73,6 +73,21 @@ static int into_limits(int i, vr_real *q)
     return 1;
 }
 
+#if VR_POLISH
+
+/* The arm's axes are a little off those that the closed form is exact for: finish by steps on the arm as it is. */
+static void polish(const vr_real goal[12], vr_real q[VR_JOINTS])
+{
+    vr_real next[VR_JOINTS], error[2];
+    int step;
+    for (step = 0; step < VR_POLISH; step++) {
+        vr_kernel_step(q, goal, next, error);
+        copy(next, q);
+    }
+}
+
+#endif
+
 int vr_branches(const vr_real base_from_tool[12], vr_real q[VR_BRANCHES][VR_JOINTS])
 {
     vr_real all[VR_BRANCHES * VR_JOINTS], error[2];
@@ -86,6 +101,9 @@ int vr_branches(const vr_real base_from_tool[12], vr_real q[VR_BRANCHES][VR_JOIN
         }
         if (!good)
             continue;
+#if VR_POLISH
+        polish(base_from_tool, q[found]);
+#endif
         vr_kernel_error(q[found], base_from_tool, error);
         found += within(error);
     }
