@@ -86,7 +86,7 @@ def export_c(
     starts = None
     if closed is None:
         kernels.append(step)
-        starts = covering_starts(chain, task, seed=seed)
+        starts = covering_starts(chain, task, within=(real.reached_m, real.reached_rad), seed=seed)
         mean, most = (
             round(cycles(step.operations, real) * n) for n in (starts.steps_mean, starts.steps_most)
         )

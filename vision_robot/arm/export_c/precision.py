@@ -35,7 +35,7 @@ class Precision:
 
 
 SINGLE = Precision("single", "float", "f", 4, 1e-5, 1e-4)
-DOUBLE = Precision("double", "double", "", 8, 1e-6, 1e-6)
+DOUBLE = Precision("double", "double", "", 8, 1e-9, 1e-9)
 PRECISIONS = {one.name: one for one in (SINGLE, DOUBLE)}
 
 

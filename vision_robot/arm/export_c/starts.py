@@ -16,8 +16,7 @@ STEPS = 40
 """Most steps from one start."""
 PATIENCE = 8
 """Steps in which the error has to halve."""
-TOLERANCE_M, TOLERANCE_RAD = 1e-6, 1e-6
-CANDIDATES = 96
+CANDIDATES = 64
 TURN = 2**32
 
 
@@ -35,17 +34,24 @@ class Starts:
     steps_most: int
 
 
-def covering_starts(chain: SerialChain, task: Task, *, goals: int = 2000, seed: int = 0) -> Starts:
+def covering_starts(
+    chain: SerialChain,
+    task: Task,
+    *,
+    within: tuple[float, float] = (1e-6, 1e-6),
+    goals: int = 1000,
+    seed: int = 0,
+) -> Starts:
     """Choose starts greedily until every one of `goals` goals is reached, then try them on as many others.
 
-    The descent is the one of vr_ik.c, so that what holds here holds there.
+    A goal is reached `within` a distance [m] and angle [rad]. The descent is the one of vr_ik.c, so that
+    what holds here holds there.
     """
-    step = Vectorised(symbolic.lm_step(chain, task))
-    scale = symbolic.length_scale(chain)
+    descent = _Descent(Vectorised(symbolic.lm_step(chain, task)), symbolic.length_scale(chain), *within)
     rng = np.random.default_rng(seed)
     candidates = np.vstack([chain.limits.mean(axis=1), spread_points(chain, CANDIDATES - 1)])
     drawn = _goals(chain, goals, rng)
-    reached, _ = _from_each(step, candidates, drawn, scale)
+    reached, _ = descent.from_each(candidates, drawn)
     order: list[int] = []
     missing = np.ones(goals, dtype=bool)
     while True:
@@ -58,7 +64,7 @@ def covering_starts(chain: SerialChain, task: Task, *, goals: int = 2000, seed: 
         if not missing.any():
             break
     chosen = candidates[order]
-    ok, calls = _from_each(step, chosen, _goals(chain, goals, rng), scale)
+    ok, calls = descent.from_each(chosen, _goals(chain, goals, rng))
     first = np.where(ok.any(axis=0), np.argmax(ok, axis=0), len(chosen) - 1)
     tried = np.arange(len(chosen))[:, None] <= first
     total = (calls * tried).sum(axis=0)
@@ -85,45 +91,52 @@ def _goals(chain: SerialChain, count: int, rng: np.random.Generator) -> Float[Ar
     return chain.base_from_tool(q).as_matrix()[:, :3].reshape(count, 12).T
 
 
-def _from_each(
-    step: Vectorised, starts: Float[Array, "k n"], goals: Float[Array, "12 g"], scale: float
-) -> tuple[Bool[Array, "k g"], Int[Array, "k g"]]:
-    """Whether each start reaches each goal, and in how many calls of the step."""
-    k, g = len(starts), goals.shape[1]
-    reached, calls = _descend(step, np.repeat(starts, g, axis=0).T, np.tile(goals, k), scale)
-    return reached.reshape(k, g), calls.reshape(k, g)
-
-
-def _descend(
-    step: Vectorised, q: Float[Array, "n p"], goals: Float[Array, "12 p"], scale: float
-) -> tuple[Bool[Array, "p"], Int[Array, "p"]]:
+@dataclass(frozen=True)
+class _Descent:
     """`descend` of vr_ik.c, for many pairs of start and goal at once."""
-    count = q.shape[1]
-    reached, calls = np.zeros(count, dtype=bool), np.ones(count, dtype=int)
-    at = np.arange(count)
-    before = np.full(count, np.inf)
-    here, error = step(q, goals)
-    for k in range(STEPS):
-        following, next_error = step(here, goals[:, at])
-        calls[at] += 1
-        cost, next_cost = _cost(error, scale), _cost(next_error, scale)
-        done = _within(error) & ~(next_cost < 0.25 * cost)
-        stuck = np.zeros(len(at), dtype=bool)
-        if k % PATIENCE == PATIENCE - 1:
-            stuck = ~done & ~(next_cost < 0.5 * before) & ~_within(next_error)
-            before = next_cost
-        reached[at[done]] = True
-        on = ~(done | stuck)
-        at, before, here, error = at[on], before[on], following[:, on], next_error[:, on]
-        if not len(at):
-            return reached, calls
-    reached[at] = _within(error)
-    return reached, calls
 
+    step: Vectorised
+    scale: float
+    reached_m: float
+    reached_rad: float
 
-def _within(error: Float[Array, "2 p"]) -> Bool[Array, "p"]:
-    return (error[0] <= TOLERANCE_M) & (error[1] <= TOLERANCE_RAD)
+    def from_each(
+        self, starts: Float[Array, "k n"], goals: Float[Array, "12 g"]
+    ) -> tuple[Bool[Array, "k g"], Int[Array, "k g"]]:
+        """Whether each start reaches each goal, and in how many calls of the step."""
+        k, g = len(starts), goals.shape[1]
+        reached, calls = self.run(np.repeat(starts, g, axis=0).T, np.tile(goals, k))
+        return reached.reshape(k, g), calls.reshape(k, g)
 
+    def run(
+        self, q: Float[Array, "n p"], goals: Float[Array, "12 p"]
+    ) -> tuple[Bool[Array, "p"], Int[Array, "p"]]:
+        """Whether each joint vector reaches its goal, and in how many calls."""
+        count = q.shape[1]
+        reached, calls = np.zeros(count, dtype=bool), np.ones(count, dtype=int)
+        at, before = np.arange(count), np.full(count, np.inf)
+        here, error = self.step(q, goals)
+        for k in range(STEPS):
+            following, next_error = self.step(here, goals[:, at])
+            calls[at] += 1
+            next_cost = self.cost(next_error)
+            done = self.within(error) & ~(next_cost < 0.25 * self.cost(error))
+            stuck = np.zeros(len(at), dtype=bool)
+            if k % PATIENCE == PATIENCE - 1:
+                stuck = ~done & ~(next_cost < 0.5 * before) & ~self.within(next_error)
+                before = next_cost
+            reached[at[done]] = True
+            on = ~(done | stuck)
+            at, before, here, error = at[on], before[on], following[:, on], next_error[:, on]
+            if not len(at):
+                return reached, calls
+        reached[at] = self.within(error)
+        return reached, calls
 
-def _cost(error: Float[Array, "2 p"], scale: float) -> Float[Array, "p"]:
-    return error[0] ** 2 + (scale * error[1]) ** 2
+    def within(self, error: Float[Array, "2 p"]) -> Bool[Array, "p"]:
+        """Near enough."""
+        return (error[0] <= self.reached_m) & (error[1] <= self.reached_rad)
+
+    def cost(self, error: Float[Array, "2 p"]) -> Float[Array, "p"]:
+        """Squared distance, angles times the length scale."""
+        return error[0] ** 2 + (self.scale * error[1]) ** 2

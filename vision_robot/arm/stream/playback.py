@@ -2,7 +2,7 @@
 
 import contextlib
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 
 from vision_robot.arm.stream.joint_table import JointTable
 from vision_robot.arm.stream.link import Link
@@ -19,7 +19,7 @@ def play(
     rate: float = 1.0,
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], None] = time.sleep,
-) -> Iterator[tuple[float, Answer]]:
+) -> Generator[tuple[float, Answer], None, None]:
     """Send each row when its time has come; yields how late it was answered [s], and the answer.
 
     `rate` 0.5 plays at half speed. Whatever ends it early, an error or an interrupt, tells the

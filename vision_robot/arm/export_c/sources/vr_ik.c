@@ -73,6 +73,18 @@ static int into_limits(int i, vr_real *q)
     return 1;
 }
 
+/* Squared distance between joint values, slides in units of the arm's length. */
+static vr_real apart(const vr_real *a, const vr_real *b)
+{
+    vr_real sum = 0, step;
+    int i;
+    for (i = 0; i < VR_JOINTS; i++) {
+        step = vr_slides[i] ? (a[i] - b[i]) / VR_LENGTH : a[i] - b[i];
+        sum += step * step;
+    }
+    return sum;
+}
+
 #if VR_POLISH
 
 /* The arm's axes are a little off those that the closed form is exact for: finish by steps on the arm as it is. */
@@ -104,22 +116,12 @@ int vr_branches(const vr_real base_from_tool[12], vr_real q[VR_BRANCHES][VR_JOIN
 #if VR_POLISH
         polish(base_from_tool, q[found]);
 #endif
+        for (i = 0; i < found && good; i++) /* branches meet where the arm is singular */
+            good = apart(q[i], q[found]) > VR_SAME;
         vr_kernel_error(q[found], base_from_tool, error);
-        found += within(error);
+        found += good && within(error);
     }
     return found;
-}
-
-/* Squared distance between joint values, slides in units of the arm's length. */
-static vr_real apart(const vr_real *a, const vr_real *b)
-{
-    vr_real sum = 0, step;
-    int i;
-    for (i = 0; i < VR_JOINTS; i++) {
-        step = vr_slides[i] ? (a[i] - b[i]) / VR_LENGTH : a[i] - b[i];
-        sum += step * step;
-    }
-    return sum;
 }
 
 int vr_solve(const vr_real base_from_tool[12], const vr_real now[VR_JOINTS], vr_real q[VR_JOINTS], vr_real error[2])
