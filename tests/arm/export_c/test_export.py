@@ -71,7 +71,7 @@ def test_a_thousand_goals_are_answered_as_in_python(compiled, method, precision,
         branches = turned_towards(chain, given, now)
         off = np.abs(branches - answer).max(axis=1)
         spread = np.linalg.norm((branches - now) * scale, axis=1)
-        if len(branches) > 1 and float(np.min(np.diff(np.sort(spread)))) < 1e-2:
+        if len(branches) > 1 and np.diff(np.sort(spread)).min() < 1e-2:
             continue  # two branches about as near, or about to meet
         firm += 1
         # What the pose leaves open of the joints, near where the arm is singular.
