@@ -13,6 +13,7 @@ __all__ = [
     "BadArm",
     "BadCameraFile",
     "BadCornerFile",
+    "BadGoal",
     "BadInput",
     "BadParameter",
     "BadPort",
@@ -242,6 +243,14 @@ class BadArm(BadInput):
     def __init__(self, path: object, why: str):
         self.path, self.why = str(path), why
         super().__init__(f"{path} is not an arm this tool can use: {why}")
+
+
+class BadGoal(BadInput):
+    """A pose can be no goal of an arm."""
+
+    def __init__(self, row: int, why: str, where: str = "goal"):
+        self.row, self.why, self.where = row, why, where
+        super().__init__(f"{where} {row} cannot be used: {why}")
 
 
 class MissingLimits(BadArm):

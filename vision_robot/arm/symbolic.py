@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["base_from_tool", "jacobian", "length_scale", "lm_step", "residual", "rows_of_pose"]
 
-DAMPING = 0.3
-"""Share of the present cost that damps a step (Sugihara 2011, IEEE T-RO 27(5), with Chan's weight)."""
+DAMPING = 0.01
+"""What |r|, in units of the length scale, damps a step by: as little as keeps most searches on their way."""
 
 LEAST_DAMPING = 1e-13
 """Keeps the equations solvable where the arm is singular; in units of the length scale squared."""
@@ -58,12 +58,13 @@ def residual(chain: SerialChain, task: Task = Task.POSE) -> "Function":
     return ca.Function("residual", [q, goal], [r, ca.densify(J), error], ["q", "goal"], ["r", "J", "error"])
 
 
-def lm_step(chain: SerialChain, task: Task = Task.POSE) -> "Function":
+def lm_step(chain: SerialChain, task: Task = Task.POSE, *, damping: float = DAMPING) -> "Function":
     """``lm_step(q, goal) -> next_q, error``: one step towards the goal, never past a limit.
 
     `error` (2,), distance [m] and angle [rad], is that of q, not of next_q. The step minimises
-    |r + J dq|^2 + lambda |dq|^2, lambda growing with the cost, over joints that do not press against
-    their limit, and is then cut to the limits.
+    |r + J dq|^2 + lambda |dq|^2, lambda being `damping` times |r|, over joints that do not press against
+    their limit, and is then cut to the limits. No step looks back: near the goal they converge
+    quadratically, and where the arm is singular they still halve the way (Fan & Yuan 2005, Computing 74).
     """
     import casadi as ca
 
@@ -71,7 +72,7 @@ def lm_step(chain: SerialChain, task: Task = Task.POSE) -> "Function":
     r, J, error = _residual(chain, task, q, goal)
     scale = length_scale(chain)
     gradient, H = ca.mtimes(J.T, r), ca.mtimes(J.T, J)
-    damping = DAMPING * ca.dot(r, r) / scale**2 + LEAST_DAMPING
+    weakening = damping * ca.sqrt(ca.dot(r, r)) / scale + LEAST_DAMPING
     weight = [1.0 if slides else scale**2 for slides in chain.slides]
     free = []
     for i, (low, high) in enumerate(chain.limits):
@@ -82,7 +83,7 @@ def lm_step(chain: SerialChain, task: Task = Task.POSE) -> "Function":
     n = len(chain)
     rows = [[H[i, j] * free[i] * free[j] for j in range(n)] for i in range(n)]
     for i in range(n):
-        rows[i][i] = rows[i][i] + weight[i] * (damping + (1 - free[i]))
+        rows[i][i] = rows[i][i] + weight[i] * (weakening + (1 - free[i]))
     step = _solve_positive(rows, [-gradient[i] * free[i] for i in range(n)])
     inside = [ca.fmin(ca.fmax(q[i] + step[i], low), high) for i, (low, high) in enumerate(chain.limits)]
     return ca.Function("lm_step", [q, goal], [ca.vertcat(*inside), error], ["q", "goal"], ["next_q", "error"])

@@ -11,7 +11,7 @@ __all__ = ["ColumnScara"]
 
 
 class ColumnScara(Structure):
-    """Slide along u, turns 2 and 3 about u; 4 about b at right angles to u; 5 about c at right angles to 4."""
+    """Slide along u, 2 and 3 about u; turn 4 about b at right angles to u; 5 about c at right angles to b."""
 
     name = "column, two upright axes, wrist pitch, roll"
     pattern = "PRRRR"
