@@ -25,12 +25,19 @@ __all__ = [
     "BrokenPlugin",
     "ContradictingPoses",
     "DegeneratePoses",
+    "BadPort",
+    "BadTable",
+    "BadVideo",
+    "BoardNotFound",
+    "CommandRefused",
     "DegenerateViews",
+    "LinkMismatch",
     "MissingLimits",
     "EdgeOnPlane",
     "MissingOpenGL",
     "MissingPackage",
     "MixedImageSizes",
+    "NoAnswer",
     "NoConvergence",
     "NoImages",
     "NoScheduler",
@@ -77,6 +84,27 @@ class MissingOpenGL(VisionRobotError):
             f"no OpenGL back end can render ({reasons}): install one with "
             "'apt-get install libegl1 libgl1 libgl1-mesa-dri' or 'pip install --no-deps lavavu-osmesa'"
         )
+
+
+class NoAnswer(VisionRobotError):
+    """The other end of a serial line keeps silent."""
+
+    def __init__(self, port: str, message: str, sequence: int, tries: int, timeout_s: float):
+        self.port, self.message, self.sequence = port, message, sequence
+        self.tries, self.timeout_s = tries, timeout_s
+        super().__init__(
+            f"{port}: no answer to {message} number {sequence}, sent {tries} time(s) and waited for "
+            f"{1e3 * timeout_s:.0f} ms each: check cable, baud rate and that the receiver runs; "
+            "whether the command was carried out is not known"
+        )
+
+
+class CommandRefused(VisionRobotError):
+    """A microcontroller did not do what it was told, and said why."""
+
+    def __init__(self, port: str, message: str, sequence: int, status: str, meaning: str):
+        self.port, self.message, self.sequence, self.status = port, message, sequence, status
+        super().__init__(f"{port}: {message} number {sequence} was refused ({status}): {meaning}")
 
 
 class MissingPackage(VisionRobotError):
@@ -307,6 +335,24 @@ class BrokenPlugin(BadInput):
     def __init__(self, name: str, package: str, target: str, why: str):
         self.name, self.package, self.target, self.why = name, package, target, why
         super().__init__(f"{name} of package {package} ({target}) cannot be loaded ({why}): mend or remove")
+class BadPort(BadInput):
+    """A serial port cannot be used."""
+
+    def __init__(self, port: str, why: str, there_are: Sequence[str]):
+        self.port, self.why, self.there_are = port, why, tuple(there_are)
+        known = ", ".join(there_are) or "none"
+        super().__init__(f"{port} cannot be used as a serial port ({why}): this machine has {known}")
+
+
+class LinkMismatch(BadInput):
+    """Computer and microcontroller do not speak of the same thing."""
+
+    def __init__(self, port: str, what: str, there: object, here: object):
+        self.port, self.what, self.there, self.here = port, what, there, here
+        super().__init__(
+            f"{port}: {what} is {there} at the microcontroller and {here} here: "
+            "give the arm it was built for, or export and flash it again"
+        )
 
 
 class BadArm(BadInput):
