@@ -12,8 +12,10 @@ from typing import Any
 __all__ = [
     "BadCameraFile",
     "BadCornerFile",
+    "BadDataset",
     "BadInput",
     "BadParameter",
+    "BadRecipe",
     "BadTable",
     "BadVideo",
     "BoardNotFound",
@@ -152,6 +154,22 @@ class BadCornerFile(BadInput):
     def __init__(self, path: object, why: str):
         self.path, self.why = str(path), why
         super().__init__(f"{path} cannot be used as corners: {why}")
+
+
+class BadDataset(BadInput):
+    """A folder is no dataset in a layout that this library reads, or an incomplete one."""
+
+    def __init__(self, path: object, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"{path} cannot be used as a dataset: {why}")
+
+
+class BadRecipe(BadInput):
+    """A recipe of a synthetic dataset cannot be used."""
+
+    def __init__(self, recipe: object, why: str):
+        self.recipe, self.why = str(recipe), why
+        super().__init__(f"recipe {recipe}: {why}")
 
 
 class BadTable(BadInput):

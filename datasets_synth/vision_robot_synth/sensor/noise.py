@@ -32,9 +32,7 @@ def standard_normals(shape: tuple[int, ...], seed: int, frame: int) -> Float[Arr
     return np.take(_quantiles(), np.frombuffer(bits, dtype="<u2")).reshape(shape)
 
 
-def deviation(
-    light: Float[Array, "h w *c"], read: float, shot: float
-) -> Float[Array, "h w *c"] | np.float32:
+def deviation(light: Float[Array, "h w *c"], read: float, shot: float) -> Float[Array, "h w *c"] | np.float32:
     """Standard deviation [grey values] of each pixel: ``sqrt(read^2 + shot * light)``."""
     if shot == 0:
         return np.float32(read)

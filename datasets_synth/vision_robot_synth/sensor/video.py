@@ -52,7 +52,7 @@ class VideoSensor:
     shade_period_s: float = 4.0
     """Period of the fastest part of its way [s]."""
     shot_noise: float = 0.0
-    """Variance of the photons' noise per grey value [grey values]; the inverse of electrons per grey value."""
+    """Variance of the photons' noise per grey value [grey values]: one over electrons per grey value."""
     read_noise: float = 0.0
     """Standard deviation of the read-out's noise [grey values]."""
     jpeg: int = 0
@@ -84,14 +84,13 @@ class VideoSensor:
 
     def gain(self, size: tuple[int, int], time_s: float, seed: int) -> Float[Array, "h w c"] | None:
         """Gain of pixels and channels at a time, broadcast over what it does not depend on; None for 1."""
-        width, height = size
         gain = np.ones((1, 1, 1), dtype=np.float32)
         if self.vignetting:
             gain = gain * vignette(size, self.vignetting)[..., None]
         if self.shade:
             gain = gain * shade_field(time_s, size, self.shade, self.shade_period_s, seed)[..., None]
         if self.flicker:
-            rows = flicker_rows(time_s, height, self.flicker, self.flicker_hz, self.readout_s, seed)
+            rows = flicker_rows(time_s, size[1], self.flicker, self.flicker_hz, self.readout_s, seed)
             gain = gain * rows[:, None, None]
         if self.exposure_drift or self.white_balance_drift:
             drifts = self.exposure_drift, self.white_balance_drift
