@@ -42,13 +42,17 @@ def read_ids(path: Path | str) -> Int[Array, "height width"]:
     return ids.astype(np.int64)
 
 
-def encode_runs(mask: Bool[Array, "height width"]) -> list[int]:
-    """COCO's run lengths: down the columns, from left to right, first those that are not of the mask."""
-    flat = np.asarray(mask, dtype=bool).T.ravel()
-    changes = np.flatnonzero(np.diff(flat, prepend=False, append=False))
-    if flat.size and flat[-1]:
-        changes[-1] = flat.size
-    return np.diff(changes, prepend=0, append=flat.size).tolist() if changes.size else [int(flat.size)]
+def encode_runs(mask: Bool[Array, "height width"], columns: slice = slice(None)) -> list[int]:
+    """COCO's run lengths: down the columns, from left to right, first those that are not of the mask.
+
+    Only `columns` are looked at; the others are taken to hold nothing of it.
+    """
+    height, width = mask.shape
+    first, last, _ = columns.indices(width)
+    flat = np.asarray(mask[:, first:last], dtype=bool).T.ravel()
+    starts_and_ends = np.flatnonzero(np.diff(flat, prepend=False, append=False)) + first * height
+    counts = np.diff(starts_and_ends, prepend=0, append=width * height).tolist()
+    return counts if len(counts) == 1 or counts[-1] else counts[:-1]
 
 
 def decode_runs(counts: Sequence[int], size: tuple[int, int]) -> Bool[Array, "height width"]:

@@ -65,9 +65,10 @@ class Number(Kind):
         return float(value) if good and self.least <= value <= self.most and math.isfinite(value) else None
 
     def drawn(self, value: Any, rng: np.random.Generator) -> Any:
-        """Evenly from the pair; a number is drawn for a single value too, so that neighbours stay the same."""
-        share = rng.random()
-        return value[0] + share * (value[1] - value[0]) if isinstance(value, tuple) else value
+        """Evenly from the pair."""
+        if not isinstance(value, tuple):
+            return value
+        return value[0] + rng.random() * (value[1] - value[0])
 
     def between(self, low: Any, high: Any, share: float) -> Any:
         """Linearly, the ends of pairs each for itself."""
@@ -99,10 +100,7 @@ class Whole(Number):
 
     def drawn(self, value: Any, rng: np.random.Generator) -> Any:
         """Evenly, both ends included."""
-        share = rng.random()
-        if not isinstance(value, tuple):
-            return value
-        return min(value[0] + int(share * (value[1] - value[0] + 1)), value[1])
+        return int(rng.integers(value[0], value[1] + 1)) if isinstance(value, tuple) else value
 
     def between(self, low: Any, high: Any, share: float) -> Any:
         """Rounded."""
@@ -189,7 +187,10 @@ class Choice(Kind):
 class Flag(Kind):
     """True or false."""
 
-    allowed = "true or false"
+    @property
+    def allowed(self) -> str:
+        """Both."""
+        return "true or false"
 
     def checked(self, value: Any) -> Any:
         """A bool."""
@@ -200,7 +201,10 @@ class Flag(Kind):
 class Text(Kind):
     """Words in quotes."""
 
-    allowed = "words in quotes"
+    @property
+    def allowed(self) -> str:
+        """Any."""
+        return "words in quotes"
 
     def checked(self, value: Any) -> Any:
         """A str."""

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from vision_robot.errors import BadRecipe
-from vision_robot_synth.recipe.kinds import Kind
-from vision_robot_synth.recipe.parts import PARTS, SENSOR_KEYS, ThingPart, VideoPart, keys_of
+from vision_robot_synth.recipe.parts import PARTS, Key, ThingPart, VideoPart, keys_of
 from vision_robot_synth.recipe.recipe import Recipe
+from vision_robot_synth.recipe.sensor_keys import SENSOR_KEYS
 
 __all__ = ["RECIPES", "read_recipe", "recipe_names"]
 
@@ -41,8 +41,9 @@ def _found(recipe: str, beside: Path) -> Path:
         return path
     if recipe not in recipe_names():
         raise BadRecipe(
-            repr(recipe), f"there is none of this name{_nearest(recipe, recipe_names())}; "
-            "'vr synth --list' shows all, and a file of your own is named *.toml"
+            repr(recipe),
+            f"there is none of this name{_nearest(recipe, recipe_names())}; "
+            "'vr synth --list' shows all, and a file of your own is named *.toml",
         )
     return RECIPES / f"{recipe}.toml"
 
@@ -76,31 +77,33 @@ def _checked(name: str, tree: Mapping[str, Any]) -> tuple[dict[str, Any], dict[s
     """The tree with values in their own types, and the dial; refuses what is unknown or not allowed."""
     video = keys_of(VideoPart)
     _known(name, "", tree, [*video, *PARTS, *OTHER_TABLES, "extend"])
-    result: dict[str, Any] = _values(name, "", {k: v for k, v in tree.items() if k in video}, _kinds(VideoPart))
+    result: dict[str, Any] = _values(
+        name, "", {k: v for k, v in tree.items() if k in video}, keys_of(VideoPart)
+    )
     for table in (*PARTS, *OTHER_TABLES):
         if not isinstance(tree.get(table, {}), dict):
             raise BadRecipe(name, f"{table} must be a table, [{table}]")
     for table, part in PARTS.items():
         if table in tree:
-            result[table] = _values(name, f"{table}.", tree[table], _kinds(part))
-    result["sensor"] = _values(name, "sensor.", tree.get("sensor", {}), {k: kind for k, (kind, _) in SENSOR_KEYS.items()})
+            result[table] = _values(name, f"{table}.", tree[table], keys_of(part))
+    result["sensor"] = _values(name, "sensor.", tree.get("sensor", {}), SENSOR_KEYS)
     result["things"] = {}
     for thing, values in tree.get("things", {}).items():
         if not isinstance(values, dict):
             raise BadRecipe(name, f"things.{thing} must be a table, [things.{thing}]")
-        result["things"][thing] = _values(name, f"things.{thing}.", values, _kinds(ThingPart))
+        result["things"][thing] = _values(name, f"things.{thing}.", values, keys_of(ThingPart))
     return result, _dial(name, tree.get("severity", {}), result)
 
 
-def _values(recipe: str, where: str, table: Mapping[str, Any], kinds: Mapping[str, Kind]) -> dict[str, Any]:
-    _known(recipe, where, table, list(kinds))
-    return {key: _value(recipe, where + key, value, kinds[key]) for key, value in table.items()}
+def _values(recipe: str, where: str, table: Mapping[str, Any], keys: Mapping[str, Key]) -> dict[str, Any]:
+    _known(recipe, where, table, list(keys))
+    return {key: _value(recipe, where + key, value, keys[key]) for key, value in table.items()}
 
 
-def _value(recipe: str, where: str, value: Any, kind: Kind) -> Any:
-    checked = kind.checked(value)
+def _value(recipe: str, where: str, value: Any, key: Key) -> Any:
+    checked = key.kind.checked(value)
     if checked is None:
-        raise BadRecipe(recipe, f"{where} is {value!r}: it must be {kind.allowed}")
+        raise BadRecipe(recipe, f"{where} is {value!r}: it must be {key.kind.allowed}")
     return checked
 
 
@@ -110,27 +113,24 @@ def _dial(recipe: str, table: Mapping[str, Any], tree: Mapping[str, Any]) -> dic
     for path, ends in table.items():
         *tables, key = path.split(".")
         place = ".".join(tables)
-        kinds: Mapping[str, Kind] = {}
+        keys: Mapping[str, Key] = {}
         if place == "":
-            kinds = _kinds(VideoPart)
+            keys = keys_of(VideoPart)
         elif place in PARTS:
-            kinds = _kinds(PARTS[place])
+            keys = keys_of(PARTS[place])
         elif place == "sensor":
-            kinds = {k: kind for k, (kind, _) in SENSOR_KEYS.items()}
+            keys = SENSOR_KEYS
         elif len(tables) == 2 and tables[0] == "things" and tables[1] in tree["things"]:
-            kinds = _kinds(ThingPart)
-        if key not in kinds:
+            keys = keys_of(ThingPart)
+        if key not in keys:
             raise BadRecipe(
-                recipe, f"severity turns {path!r}, which is no key: write \"things.rod.speed_mm_s\" = [at 0, at 1]"
+                recipe,
+                f'severity turns {path!r}, which is no key: write "things.rod.speed_mm_s" = [at 0, at 1]',
             )
         if not isinstance(ends, list) or len(ends) != 2:
             raise BadRecipe(recipe, f"severity of {path} is {ends!r}: it must be [value at 0, value at 1]")
-        dial[path] = tuple(_value(recipe, f"severity of {path}", end, kinds[key]) for end in ends)
+        dial[path] = tuple(_value(recipe, f"severity of {path}", end, keys[key]) for end in ends)
     return dial
-
-
-def _kinds(part: type) -> dict[str, Kind]:
-    return {key: kind for key, (kind, _, _) in keys_of(part).items()}
 
 
 def _known(recipe: str, where: str, table: Mapping[str, Any], known: list[str]) -> None:

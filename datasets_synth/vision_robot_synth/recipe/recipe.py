@@ -3,14 +3,24 @@
 import copy
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from vision_robot.errors import BadParameter, BadRecipe
 from vision_robot_synth.recipe.parts import (
-    PARTS, SENSOR_KEYS, ArmPart, BeltPart, BoardPart, CameraPart, LightPart, TablePart, ThingPart, TruthPart,
+    PARTS,
+    ArmPart,
+    BeltPart,
+    BoardPart,
+    CameraPart,
+    LightPart,
+    TablePart,
+    ThingPart,
+    TruthPart,
     VideoPart,
+    keys_of,
 )  # fmt: skip
+from vision_robot_synth.recipe.sensor_keys import SENSOR_KEYS
 from vision_robot_synth.sensor import VideoSensor
 from vision_robot_synth.sensor.chance import Purpose, generator
 
@@ -44,18 +54,18 @@ class Recipe:
 
     def with_video(self, *, frames: int | None = None, size: tuple[int, int] | None = None) -> "Recipe":
         """The recipe with other frames or another size, where they are given."""
-        kinds = {one.name: one.metadata["kind"] for one in fields(VideoPart)}
+        keys = keys_of(VideoPart)
         given = {key: value for key, value in (("frames", frames), ("size", size)) if value is not None}
         for key, value in given.items():
-            if kinds[key].checked(value) is None:
-                raise BadParameter(f"--{key}", value, kinds[key].allowed)
+            if keys[key].kind.checked(value) is None:
+                raise BadParameter(f"--{key}", value, keys[key].kind.allowed)
         return replace(self, tree={**self.tree, **given})
 
     @property
     def video(self) -> VideoPart:
         """The keys before the first table."""
-        names = {one.name for one in fields(VideoPart)}
-        return VideoPart(**{key: value for key, value in self.tree.items() if key in names})
+        keys = keys_of(VideoPart)
+        return VideoPart(**{key: value for key, value in self.tree.items() if key in keys})
 
     @property
     def camera(self) -> CameraPart:
@@ -101,7 +111,7 @@ class Recipe:
         """[sensor], values drawn."""
         values = {}
         for name, value in self.tree["sensor"].items():
-            values[name] = SENSOR_KEYS[name][0].drawn(value, _generator(seed, f"sensor.{name}", 0))
+            values[name] = SENSOR_KEYS[name].kind.drawn(value, _generator(seed, f"sensor.{name}", 0))
         try:
             return VideoSensor(**values)
         except BadParameter as error:
@@ -114,9 +124,8 @@ def drawn(part: Part, seed: int, where: str, index: int = 0) -> Part:
     Every key has a stream of its own: changing one range leaves what is drawn from the others.
     """
     values = {}
-    for one in fields(part):  # type: ignore[arg-type]
-        kind, value = one.metadata["kind"], getattr(part, one.name)
-        values[one.name] = kind.drawn(value, _generator(seed, f"{where}.{one.name}", index))
+    for name, key in keys_of(type(part)).items():
+        values[name] = key.kind.drawn(getattr(part, name), _generator(seed, f"{where}.{name}", index))
     return type(part)(**values)
 
 
@@ -126,6 +135,6 @@ def _generator(seed: int, path: str, index: int) -> Any:
 
 def _kind(tables: list[str], key: str) -> Any:
     if tables == ["sensor"]:
-        return SENSOR_KEYS[key][0]
+        return SENSOR_KEYS[key].kind
     part = {**PARTS, "things": ThingPart, "": VideoPart}[tables[0] if tables else ""]
-    return next(one.metadata["kind"] for one in fields(part) if one.name == key)
+    return keys_of(part)[key].kind

@@ -16,6 +16,8 @@ __all__ = ["MOTIONS", "Motion", "Mover"]
 TRIES = 60
 """Places tried before a thing waits, or is put down where it is not clear."""
 WAIT_S = 0.5
+LOOK_AHEAD_S = 1.5
+"""So long a place must stay clear after a thing has come there, that it finds a way out in time."""
 SLOWEST_M_S = 1e-4
 
 
@@ -33,7 +35,7 @@ class Mover:
     """Which of how many of its kind it is."""
     count: int
     belt_speed_m_s: float
-    belt_y_m: float
+    belt_x_m: float
     rng: np.random.Generator
 
 
@@ -98,17 +100,22 @@ def circle(mover: Mover) -> Path:
 
 
 def belt(mover: Mover) -> Path:
-    """Carried by the belt, one after the other."""
-    left = mover.area.places(np.array([[0.0, 0.5], [1.0, 0.5]]))
-    # Along {S}'s y, the way the belt runs; the first is in the picture from the start.
-    width = float(np.abs(left[1, 1] - left[0, 1]))
-    speed = mover.belt_speed_m_s
-    gap = max(0.35 * width, 1.3 * mover.footprint.length_m)
-    along = -width / 2 + 0.3 * width - np.sign(speed or 1) * gap * mover.rank
-    sideways = mover.rng.uniform(-0.25, 0.25) * mover.footprint.length_m
-    yaw = mover.rng.uniform(-np.pi, np.pi)
-    start = (mover.belt_y_m + sideways, along, mover.footprint.above_m, yaw)
-    return Straight(start, (0.0, speed, 0.0, 0.0))
+    """Carried by the belt; all that it carries comes past within the time there is."""
+    sides = mover.area.places(np.array([[0.0, 0.5], [1.0, 0.5]]))[:, 1]
+    speed, half = mover.belt_speed_m_s, mover.footprint.length_m / 2
+    # Along {S}'s y, the way the belt runs: from well inside the picture back to what arrives last.
+    first, last = sides[0] + 0.6 * (sides[1] - sides[0]), sides[0] - speed * mover.traffic.duration_s
+    if speed < 0:
+        first, last = sides[0] + 0.4 * (sides[1] - sides[0]), sides[1] - speed * mover.traffic.duration_s
+    place, start = np.zeros(4), np.zeros(1, dtype=int)
+    for _ in range(TRIES):
+        along = first + mover.rng.random() * (last - first)
+        yaw = mover.rng.uniform(-np.pi, np.pi)
+        sideways = mover.rng.uniform(-0.3, 0.3) * half
+        place = np.array([mover.belt_x_m + sideways, along, mover.footprint.above_m, yaw])
+        if mover.traffic.free(mover.footprint, place[None], start).all():
+            break
+    return Straight(_four(place), (0.0, speed, 0.0, 0.0))
 
 
 MOTIONS: dict[str, Motion] = {
@@ -123,61 +130,65 @@ MOTIONS: dict[str, Motion] = {
 }
 
 
+def _four(place: Float[Array, "4"]) -> tuple[float, float, float, float]:
+    x, y, above, yaw = place.tolist()
+    return x, y, above, yaw
+
+
 def _start(mover: Mover) -> tuple[float, float, float, float]:
-    """A clear place for the whole time, or where none is found the last one tried."""
+    """A place that is clear all the time, or where none is found the one that is clear the longest."""
     steps = np.arange(len(mover.traffic.times_s))
-    place = np.zeros(4)
-    for _ in range(TRIES):
-        place = np.array([*mover.area.somewhere(mover.rng), mover.footprint.above_m, mover.rng.uniform(-np.pi, np.pi)])
-        if mover.traffic.free(mover.footprint, np.tile(place, (len(steps), 1)), steps).all():
-            break
-    return float(place[0]), float(place[1]), float(place[2]), float(place[3])
+    tried = np.array(
+        [[*mover.area.somewhere(mover.rng), mover.footprint.above_m, _yaw(mover)] for _ in range(TRIES)]
+    )
+    clear = mover.traffic.free(mover.footprint, np.repeat(tried[:, None], len(steps), axis=1), steps)
+    return _four(tried[int(np.argmax(clear.mean(axis=1)))])
+
+
+def _yaw(mover: Mover) -> float:
+    return float(mover.rng.uniform(-np.pi, np.pi))
 
 
 def _wander(mover: Mover, pause_s: float) -> Path:
-    """Legs to places, each the first of `TRIES` whose whole way is clear; waits where none is."""
-    steps = np.arange(1)
-    place = np.zeros(4)
-    for _ in range(TRIES):
-        place = np.array([*mover.area.somewhere(mover.rng), mover.footprint.above_m, mover.rng.uniform(-np.pi, np.pi)])
-        if mover.traffic.free(mover.footprint, place[None], steps).all():
-            break
-    times, places = [0.0], [place]
+    """Leg by leg to places whose whole way is clear; waits where there is none."""
+    ahead = np.arange(int(LOOK_AHEAD_S / STEP_S) + 1)
+    tried = np.array(
+        [[*mover.area.somewhere(mover.rng), mover.footprint.above_m, _yaw(mover)] for _ in range(TRIES)]
+    )
+    clear = mover.traffic.free(mover.footprint, np.repeat(tried[:, None], len(ahead), axis=1), ahead)
+    times, places = [0.0], [tried[int(np.argmax(clear.mean(axis=1)))]]
     while times[-1] < mover.traffic.duration_s:
-        for goal, arrival in _legs(mover, places[-1], times[-1], pause_s):
-            times.append(arrival)
-            places.append(goal)
-    return Waypoints(tuple(times), tuple(tuple(map(float, one)) for one in places))  # type: ignore[misc]
+        goal, arrival = _leg(mover, places[-1], times[-1], pause_s)
+        times.append(arrival)
+        places.append(goal)
+        if pause_s > 0:
+            times.append(arrival + pause_s)
+            places.append(goal.copy())
+    return Waypoints(tuple(times), tuple(_four(place) for place in places))
 
 
-def _legs(
+def _leg(
     mover: Mover, place: Float[Array, "4"], now_s: float, pause_s: float
-) -> list[tuple[Float[Array, "4"], float]]:
-    """The next leg, with its pause: places and when they are reached."""
-    candidates = []
-    for attempt in range(TRIES):
-        goal = np.array([*mover.area.somewhere(mover.rng), place[2], place[3]])
-        if attempt > TRIES // 2:  # a short way is more often clear
-            goal[:2] = place[:2] + (goal[:2] - place[:2]) * 0.3
-        leg = max(float(np.linalg.norm(goal[:2] - place[:2])) / max(mover.speed_m_s, SLOWEST_M_S), STEP_S)
-        goal[3] += leg * mover.spin_rad_s
-        length = leg + pause_s
-        steps = np.arange(int(now_s / STEP_S), int((now_s + length) / STEP_S) + 2)
-        share = np.clip((steps * STEP_S - now_s) / leg, 0, 1)[:, None]
-        way = place + share * (goal - place)
-        clear = mover.traffic.free(mover.footprint, way, steps)
-        if clear.all():
-            return _with_pause(goal, now_s + leg, pause_s)
-        candidates.append((int(clear.sum()) / len(clear), leg, goal))
-    stay = np.arange(int(now_s / STEP_S), int((now_s + WAIT_S) / STEP_S) + 2)
-    if mover.traffic.free(mover.footprint, np.tile(place, (len(stay), 1)), stay).all():
-        return [(place.copy(), now_s + WAIT_S)]
-    _, leg, goal = max(candidates, key=lambda one: one[0])
-    return _with_pause(goal, now_s + leg, pause_s)
+) -> tuple[Float[Array, "4"], float]:
+    """The next place and when it is reached: the first of `TRIES` whose way, and a while there, are clear.
 
-
-def _with_pause(
-    goal: Float[Array, "4"], arrival_s: float, pause_s: float
-) -> list[tuple[Float[Array, "4"], float]]:
-    ways = [(goal, arrival_s)]
-    return [*ways, (goal.copy(), arrival_s + pause_s)] if pause_s > 0 else ways
+    Where none is, the way that is clear the longest; staying is one of the ways.
+    """
+    goals = np.array([[*mover.area.somewhere(mover.rng), place[2], place[3]] for _ in range(TRIES)])
+    goals[TRIES // 2 :, :2] = place[:2] + 0.3 * (
+        goals[TRIES // 2 :, :2] - place[:2]
+    )  # short ways are clear more often
+    goals[-1] = place
+    legs = np.linalg.norm(goals[:, :2] - place[:2], axis=1) / max(mover.speed_m_s, SLOWEST_M_S)
+    legs = np.maximum(legs, STEP_S)
+    legs[-1] = WAIT_S
+    goals[:-1, 3] += legs[:-1] * mover.spin_rad_s
+    first = int(now_s / STEP_S)
+    steps = np.arange(first, first + int((legs.max() + pause_s + LOOK_AHEAD_S) / STEP_S) + 2)
+    share = np.clip((steps * STEP_S - now_s) / legs[:, None], 0, 1)[..., None]
+    clear = mover.traffic.free(mover.footprint, place + share * (goals[:, None] - place), steps)
+    # A goal is as good as it is long until something is in the way, up to what is asked.
+    blocked = np.where(clear.all(axis=1), len(steps), np.argmin(clear, axis=1)) * STEP_S
+    spare = np.minimum(blocked - legs - pause_s - LOOK_AHEAD_S, 0)
+    best = int(np.argmax(spare))
+    return goals[best], now_s + float(legs[best])

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from vision_robot.sim.paths import Path
-from vision_robot.types import Array, Bool, Float
+from vision_robot.types import Array, Bool, Float, Int
 
 __all__ = ["Footprint", "Traffic"]
 
@@ -49,17 +49,18 @@ class Traffic:
         self.planned.append((footprint, footprint.ends(places)))
 
     def free(
-        self, footprint: Footprint, places: Float[Array, "k 4"], steps: Array
-    ) -> Bool[Array, "k"]:
+        self, footprint: Footprint, places: Float[Array, "*ways k 4"], steps: Int[Array, "*ways k"]
+    ) -> Bool[Array, "*ways k"]:
         """Which of these places, each at its own step of time, are clear of all that is planned."""
-        mine = footprint.ends(places)
-        clear = np.ones(len(places), dtype=bool)
+        shape = places.shape[:-1]
+        mine, when = footprint.ends(places.reshape(-1, 4)), np.broadcast_to(steps, shape).ravel()
+        clear = np.ones(len(mine), dtype=bool)
         for other, ends in self.planned:
             if abs(other.above_m - footprint.above_m) > 1e-9:
                 continue
             apart = (footprint.width_m + other.width_m) / 2 + CLEARANCE_M
-            clear &= _distance(mine, ends[np.minimum(steps, len(ends) - 1)]) > apart
-        return clear
+            clear &= _distance(mine, ends[np.minimum(when, len(ends) - 1)]) > apart
+        return clear.reshape(shape)
 
 
 def _distance(a: Float[Array, "k 2 2"], b: Float[Array, "k 2 2"]) -> Float[Array, "k"]:

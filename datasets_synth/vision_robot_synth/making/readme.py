@@ -1,0 +1,59 @@
+"""The README of a dataset."""
+
+from typing import Any
+
+__all__ = ["readme_text"]
+
+TEXT = """# {recipe}
+
+{description}.
+
+{count} frames of {width} x {height} px at {fps:g} frames a second, rendered in MuJoCo by `vr synth` of Vision Robot
+{version}; recipe `{recipe}`, severity {severity:g}, seed {seed}. The same command on the same machine gives the same bytes:
+
+    vr synth {recipe} --severity {severity:g} --seed {seed} --frames {count} --size {width}x{height} -o DIR
+
+| file | holds |
+|---|---|
+| `dataset.json` | recipe, seed, versions, camera, work plane, objects, where the rest is; reads as a file of camera and plane too |
+| `frames/000000.png` ... | the pictures, lossless |
+| `truth/tracks.csv` | one row an object and frame: `frame,time_s,id,u_px,v_px,...`, pose in the station frame, what is hidden |
+{rows}
+`vision_robot.dataset.open_dataset(DIR)` reads all of it. Pixels: (0, 0) is the centre of the first one, u right, v down.
+Lengths in the tables are as their names say (px, mm); {{S}}, the station frame, lies on the table, z up.
+
+Objects: {objects}.
+"""
+
+ROWS = {
+    "masks": "| `{pattern}` | id of the object at each pixel, 0 for none |",
+    "coco": "| `{0}` | the same masks as COCO keeps them (run lengths) |",
+    "flow": "| `{pattern}` | true optical flow to the frame {step} later: KITTI's 16-bit PNG (blue 2: hidden there), or .flo |",
+    "mot": "| `{0}`, `seqinfo.ini` | boxes in MOTChallenge's layout, hidden parts included; visibility in the last column |",
+}
+
+
+def readme_text(described: dict[str, Any]) -> str:
+    """The text for a dataset.json."""
+    rows = []
+    for name, row in ROWS.items():
+        where = described["truth"].get(name)
+        if where is not None:
+            rows.append(row.format(**where) if isinstance(where, dict) else row.format(where))
+    if "camera_motion" in described:
+        rows.append(f"| `{described['camera_motion']}` | where the station stands before the moving camera |")
+    width, height = described["size"]
+    objects = "; ".join(f"{one['id']} {one['name']} ({one['shape']})" for one in described["objects"])
+    return TEXT.format(
+        recipe=described["recipe"],
+        description=described["description"],
+        count=described["frames"]["count"],
+        width=width,
+        height=height,
+        fps=described["fps"],
+        version=described["versions"]["vision_robot"],
+        severity=described["severity"],
+        seed=described["seed"],
+        rows="\n".join(rows),
+        objects=objects or "none",
+    )
