@@ -8,19 +8,20 @@ TEXT = """# {recipe}
 
 {description}.
 
-{count} frames of {width} x {height} px at {fps:g} frames a second, rendered in MuJoCo by `vr synth` of Vision Robot
-{version}; recipe `{recipe}`, severity {severity:g}, seed {seed}. The same command on the same machine gives the same bytes:
+{count} frames of {width} x {height} px at {fps:g} frames a second, rendered in MuJoCo by `vr synth`
+of Vision Robot {version}. The same command on the same machine gives the same bytes:
 
     vr synth {recipe} --severity {severity:g} --seed {seed} --frames {count} --size {width}x{height} -o DIR
 
 | file | holds |
 |---|---|
-| `dataset.json` | recipe, seed, versions, camera, work plane, objects, where the rest is; reads as a file of camera and plane too |
+| `dataset.json` | recipe, seed, versions, camera, work plane, objects, where the rest is |
 | `frames/000000.png` ... | the pictures, lossless |
-| `truth/tracks.csv` | one row an object and frame: `frame,time_s,id,u_px,v_px,...`, pose in the station frame, what is hidden |
+| `truth/tracks.csv` | a row an object and frame: `frame,time_s,id,u_px,v_px,...`, pose, what is hidden |
 {rows}
-`vision_robot.dataset.open_dataset(DIR)` reads all of it. Pixels: (0, 0) is the centre of the first one, u right, v down.
-Lengths in the tables are as their names say (px, mm); {{S}}, the station frame, lies on the table, z up.
+`vision_robot.dataset.open_dataset(DIR)` reads all of it; `dataset.json` is a file of camera and
+work plane too. Pixels: (0, 0) is the centre of the first one, u right, v down. Lengths in the
+tables are as their names say (px, mm); {{S}}, the station frame, lies on the table, z up.
 
 Objects: {objects}.
 """
@@ -28,8 +29,8 @@ Objects: {objects}.
 ROWS = {
     "masks": "| `{pattern}` | id of the object at each pixel, 0 for none |",
     "coco": "| `{0}` | the same masks as COCO keeps them (run lengths) |",
-    "flow": "| `{pattern}` | true optical flow to the frame {step} later: KITTI's 16-bit PNG (blue 2: hidden there), or .flo |",
-    "mot": "| `{0}`, `seqinfo.ini` | boxes in MOTChallenge's layout, hidden parts included; visibility in the last column |",
+    "flow": "| `{pattern}` | true flow to the frame {step} later: KITTI's 16 bits (blue 2: hidden there), or .flo |",
+    "mot": "| `{0}`, `seqinfo.ini` | MOTChallenge: boxes, hidden parts included; last column: visibility |",
 }
 
 

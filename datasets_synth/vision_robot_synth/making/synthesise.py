@@ -42,7 +42,7 @@ def synthesise(
     severity: float = 0.5,
     seed: int = 0,
     workers: int = 1,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Made:
     """Make a dataset of a video recipe in `folder`, which appears complete or not at all.
 
@@ -72,9 +72,9 @@ def synthesise(
     try:
         workshop.folder.mkdir(parents=True, exist_ok=True)
         left = workshop.missing(count)
-        progress(count - len(left), count)
         for made, _ in enumerate(make_frames(scene, workshop, left, workers), start=1):
-            progress(count - len(left) + made, count)
+            if progress is not None:
+                progress(count - len(left) + made, count)
         _write_tables(scene, facts, workshop)
         write_text(workshop.folder / "dataset.json", text)
         # Renaming onto an empty folder is allowed, onto a full one it fails.

@@ -16,7 +16,7 @@ from vision_robot_synth.scene.scene import Scene
 __all__ = ["make_frames"]
 
 LONGEST = 24
-"""Frames handed out at a time: few enough to share evenly, many enough for the one frame more that flow needs."""
+"""Frames handed out at a time: few, to share evenly; many, because flow takes one frame more each time."""
 
 _maker: Maker | None = None
 
