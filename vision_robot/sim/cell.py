@@ -7,10 +7,21 @@ import numpy as np
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3
 from vision_robot.sim.cell_design import CellDesign, Item
-from vision_robot.sim.cell_model import ARM, BELT, ITEM, LABEL, build, direction, quaternion, resting
+from vision_robot.sim.cell_model import (
+    ARM,
+    BELT,
+    ITEM,
+    LABEL,
+    LABEL_THICKNESS_M,
+    build,
+    direction,
+    quaternion,
+    resting,
+)
 from vision_robot.sim.drive import Drive
 from vision_robot.sim.gl import load_mujoco
 from vision_robot.sim.scatter import scattered
+from vision_robot.sim.shapes import Shape, shape_named
 from vision_robot.sim.surfaces import BELT_PITCH_M
 from vision_robot.types import Array, Float
 
@@ -51,6 +62,11 @@ class Cell:
         self._station_from_base = design.base_from_station.inverse()
         self.bodies = np.array([self._body(name) for name in self.tracked], dtype=int)
         """MuJoCo's body of each tracked thing."""
+        shapes = [self._shape(name) for name in self.tracked]
+        self.hulls = [shape.hull for shape in shapes]
+        """Corners of each tracked thing's convex hull, in its own frame [m]."""
+        self.has_yaw = np.array([shape.has_yaw for shape in shapes], dtype=bool)
+        """Whether its turning about {S}'s z can be seen."""
         self.reset()
 
     # ------------------------------------------------------------------ time
@@ -149,19 +165,15 @@ class Cell:
         belt = self.design.belt
         if belt is not None:
             gone = np.mod(belt.speed_m_s * self.time_s, BELT_PITCH_M)
-            rest = np.array([belt.x_m, self.design.table.middle_m[1] + gone, 0])
+            middle = np.array([belt.x_m, self.design.table.middle_m[1] + gone, model.geom(BELT).pos[2]])
             mocap = int(model.body(BELT).mocapid[0])
-            height = self._belt_height()
-            data.mocap_pos[mocap] = self.base_from_station.apply((rest + (0, 0, height))[None])[0]
+            data.mocap_pos[mocap] = self.base_from_station.apply(middle[None])[0]
         mj.mj_kinematics(model, data)
         mj.mj_comPos(model, data)
         mj.mj_camlight(model, data)
         mj.mj_tendon(model, data)
         mj.mj_transmission(model, data)
         mj.mj_comVel(model, data)
-
-    def _belt_height(self) -> float:
-        return float(self.model.geom(BELT).pos[2])
 
     # ------------------------------------------------------------------ the arm
 
@@ -214,7 +226,7 @@ class Cell:
         opening_m: float | None = None,
         rates: Float[Array, "n"] | None = None,
     ) -> None:
-        """Put the arm there at once, without physics; `rates` are the velocities that the truth shall tell."""
+        """Put the arm there at once, without physics; `rates` are the velocities the truth shall tell."""
         drive = self._arm()
         drive.put(self.data, joints, rates)
         if opening_m is not None:
@@ -229,9 +241,14 @@ class Cell:
     # ------------------------------------------------------------------ the items
 
     def station_from(self, name: str) -> SE3:
-        """True pose of a thing in {S}; its own frame is the item's, or the label's middle with z out of it."""
+        """True pose of a thing in {S}; the label's own frame is at its middle, z out of it."""
         body = self.data.body(self._body(name))
         return self._station_from_base @ SE3(body.xmat.reshape(3, 3).copy(), body.xpos.copy())
+
+    def station_from_tracked(self) -> SE3:
+        """True poses of all tracked things in {S}, a batch."""
+        R, t = self.data.xmat[self.bodies].reshape(-1, 3, 3), self.data.xpos[self.bodies]
+        return self._station_from_base @ SE3(R, t)
 
     def velocity(self, name: str) -> Float[Array, "6"]:
         """True velocity of its middle [m/s], then angular velocity [rad/s], both in axes of {S}."""
@@ -281,6 +298,14 @@ class Cell:
         joint = self.data.joint(ITEM + item.name)
         joint.qpos[:] = [*pose.translation, *quaternion(pose.rotation)]
         joint.qvel[:] = 0
+
+    def _shape(self, name: str) -> Shape:
+        item = self._items.get(name)
+        if item is not None:
+            return shape_named(item.shape, item.size_m, item.colour)
+        assert self.design.arm is not None
+        assert self.design.arm.label is not None
+        return shape_named("box", (*self.design.arm.label_m, LABEL_THICKNESS_M), self.design.arm.label)
 
     def _body(self, name: str) -> int:
         if name == LABEL and name not in self._items and LABEL in self.tracked:

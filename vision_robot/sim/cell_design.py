@@ -8,7 +8,6 @@ import numpy as np
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.paths import Path
-from vision_robot.types import Array, Float
 
 __all__ = ["ArmMount", "Belt", "CellDesign", "Colour", "Item", "Lights", "StationCamera", "Table", "look_at"]
 
@@ -177,6 +176,6 @@ def look_at(
 
 
 def _colour(name: str, colour: Colour) -> None:
-    value: Float[Array, "3"] = np.asarray(colour, dtype=float)
+    value = np.asarray(colour, dtype=float)
     if value.shape != (3,) or not ((value >= 0) & (value <= 1)).all():
         raise BadParameter(name, colour, "red, green, blue from 0 to 1")

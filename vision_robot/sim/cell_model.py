@@ -8,13 +8,24 @@ import numpy as np
 import vision_robot.arm
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3
-from vision_robot.sim.cell_design import ArmMount, Belt, CellDesign, Item, Lights, Table
+from vision_robot.sim.cell_design import ArmMount, Belt, CellDesign, Colour, Item, Lights, Table
 from vision_robot.sim.gl import load_mujoco
 from vision_robot.sim.shapes import Collider, Shape, shape_named
 from vision_robot.sim.surfaces import BELT_PITCH_M, belt_picture, table_picture
 from vision_robot.types import Array, Float, UInt8
 
-__all__ = ["ARM", "BACKGROUND", "BELT", "ITEM", "LABEL", "THINGS", "build", "quaternion", "resting"]
+__all__ = [
+    "ARM",
+    "BACKGROUND",
+    "BELT",
+    "ITEM",
+    "LABEL",
+    "LABEL_THICKNESS_M",
+    "THINGS",
+    "build",
+    "quaternion",
+    "resting",
+]
 
 MjSpec: TypeAlias = Any
 MjsBody: TypeAlias = Any
@@ -31,6 +42,7 @@ ITEM, ARM = "item/", "arm/"
 TABLE, BELT, LABEL = "table", "belt", "label"
 
 TABLE_THICKNESS_M = 0.03
+LABEL_THICKNESS_M = 0.002
 FLOOR_BELOW_M = 0.75
 
 # Newton with the dense Hessian: the sparse one of MuJoCo 4.0.0 is wrong. Elliptic cones and impratio
@@ -148,13 +160,13 @@ def _add_table(mj: Any, spec: MjSpec, station: MjsBody, table: Table, belt: Belt
 
 
 TABLE_FRICTION = [0.5, 0.003, 0.0002]
-"""Sliding, torsional [m], rolling [m]: a round pencil given a push on a table rolls a hand's breadth or two."""
+"""Sliding, torsional [m], rolling [m]."""
 
 
 def _add_belt(
     mj: Any, spec: MjSpec, station: MjsBody, table: Table, belt: Belt, base_from_station: SE3
 ) -> None:
-    """What carries is a still geom whose surface moves; what is seen moves, and jumps back by whole pitches."""
+    """What carries is a still geom whose surface moves; what is seen moves, and jumps back by pitches."""
     half = [belt.width_m / 2, table.size_m[1] / 2, TABLE_THICKNESS_M / 2]
     middle = np.array([belt.x_m, table.middle_m[1], -TABLE_THICKNESS_M / 2])
     station.add_geom(
@@ -278,24 +290,24 @@ def _add_arm(mj: Any, spec: MjSpec, mount: ArmMount) -> None:
     if tool is None:
         raise BadParameter("arm", str(path), 'an MJCF file with a site "tool" between the fingers')
     if mount.label is not None:
-        _add_label(mj, arm, tool.parent, mount)
+        _add_label(mj, arm, tool.parent, mount, mount.label)
     spec.attach(arm, frame=spec.worldbody.add_frame(), prefix=ARM)
 
 
-def _add_label(mj: Any, arm: MjSpec, hand: MjsBody, mount: ArmMount) -> None:
+def _add_label(mj: Any, arm: MjSpec, hand: MjsBody, mount: ArmMount, colour: Colour) -> None:
     """A coloured plate on a bracket, facing away from where the tool points."""
     site = arm.site("label")
     if site is None:
         raise BadParameter("arm", str(mount.mjcf), 'an MJCF file with a site "label" to hang the label on')
-    half = [mount.label_m[0] / 2, mount.label_m[1] / 2, 0.001]
+    half = [mount.label_m[0] / 2, mount.label_m[1] / 2, LABEL_THICKNESS_M / 2]
     plate = hand.add_body(name=LABEL, pos=site.pos, quat=site.quat, gravcomp=1)
-    if not site.alt.type == mj.mjtOrientation.mjORIENTATION_QUAT:
+    if site.alt.type != mj.mjtOrientation.mjORIENTATION_QUAT:
         plate.alt = site.alt
     plate.add_geom(
         name=LABEL,
         type=mj.mjtGeom.mjGEOM_BOX,
         size=half,
-        rgba=[*mount.label, 1],
+        rgba=[*colour, 1],
         mass=0.004,
         contype=0,
         conaffinity=0,

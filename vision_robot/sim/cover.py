@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Self
 
 import cv2
 import numpy as np
 
 from vision_robot.geometry import SE3, Camera, pixel_grid
-from vision_robot.types import Array, Bool, Float, Image, Int
+from vision_robot.types import Array, Bool, Float, Image, Int, UInt8
 
 __all__ = ["PinholeCover"]
 
@@ -42,6 +43,11 @@ class _Patch:
     """Pixels of `face` at the n x n samples of each pixel, float32 for OpenCV."""
     centres: Float[Array, "rows columns 2"]
     """Pixels of `face` at the pixel centres, float32."""
+
+    @cached_property
+    def nearest(self) -> Int[Array, "2 n"]:
+        """Column and row in `face` nearest to each pixel centre inside."""
+        return np.rint(self.centres[self.inside]).astype(np.intp).T
 
 
 @dataclass(frozen=True)
@@ -85,30 +91,64 @@ class PinholeCover:
             np.copyto(image[patch.window], values, where=_like(patch.inside, values))
         return image
 
-    def assemble_depth(self, depths: Sequence[Float[Array, "rows columns"]]) -> Float[Array, "height width"]:
-        """Depth [m] along the camera's axis from the depths of `faces`."""
-        depth = np.full(self.rays.shape[:2], np.nan)
-        for patch, picture in zip(self.patches, depths, strict=True):
+    def assemble_depth(
+        self,
+        depths: Sequence[Float[Array, "rows columns"]],
+        numbers: Sequence[Int[Array, "rows columns"]],
+    ) -> Float[Array, "height width"]:
+        """Depth [m] along the camera's axis from the depths and the numbers of what is seen in `faces`."""
+        depth = np.full(self.rays.shape[:2], np.nan, dtype=np.float32)
+        for patch, picture, number in zip(self.patches, depths, numbers, strict=True):
             with np.errstate(divide="ignore"):
                 inverse = (1 / picture).astype(np.float32)  # linear in the pixel on every plane
-            smooth = _resample(inverse, patch.centres, cv2.INTER_LINEAR)
+            value = _resample(inverse, patch.centres, cv2.INTER_LINEAR)
             nearest = _resample(inverse, patch.centres, cv2.INTER_NEAREST)
-            # No mixing of near and far across the outline of a body.
-            mixed = np.abs(smooth - nearest) > 0.01 * nearest
+            # No mixing of near and far, neither across the outline of a body nor where it hides itself.
+            mixed = _resample(_uneven(number), patch.centres - 0.5, cv2.INTER_NEAREST) > 0
+            mixed = (mixed | (np.abs(value - nearest) > 0.01 * nearest)) & patch.inside
+            value[mixed] = _one_sided(inverse, number, patch.centres[mixed])
             rays = self.rays[patch.window]
             along_face = rays @ patch.turn.rotation[:, 2]
             with np.errstate(divide="ignore", invalid="ignore"):
-                value = rays[..., 2] / (along_face * np.where(mixed, nearest, smooth))
-            np.copyto(depth[patch.window], value, where=patch.inside)
+                metres = rays[..., 2] / (along_face * value)
+            np.copyto(depth[patch.window], metres, where=patch.inside)
         return depth
 
-    def assemble_ids(self, ids: Sequence[Int[Array, "rows columns 2"]]) -> Int[Array, "height width 2"]:
-        """Object ids from those of `faces`, each taken from the nearest pixel."""
-        result = np.full((*self.rays.shape[:2], 2), -1, dtype=np.int64)
-        for patch, picture in zip(self.patches, ids, strict=True):
-            u, v = np.rint(patch.centres[patch.inside]).astype(int).T
+    def assemble_numbers(self, numbers: Sequence[Int[Array, "rows columns"]]) -> Int[Array, "height width"]:
+        """Numbers of what is seen from those of `faces`, each of the nearest pixel; 0 outside the lens."""
+        result = np.zeros(self.rays.shape[:2], dtype=numbers[0].dtype)
+        for patch, picture in zip(self.patches, numbers, strict=True):
+            u, v = patch.nearest
             result[patch.window][patch.inside] = picture[v, u]
         return result
+
+
+def _uneven(number: Int[Array, "rows columns"]) -> UInt8[Array, "rows columns"]:
+    """Where a pixel's number is not that of its neighbours to the right, below, and both."""
+    uneven = np.zeros(number.shape, dtype=np.uint8)
+    one = number[:-1, :-1]
+    uneven[:-1, :-1] = (one != number[:-1, 1:]) | (one != number[1:, :-1]) | (one != number[1:, 1:])
+    return uneven
+
+
+def _one_sided(
+    inverse: Float[Array, "rows columns"], number: Int[Array, "rows columns"], pixels: Float[Array, "n 2"]
+) -> Float[Array, "n"]:
+    """Inverse depth at pixels, continued from the nearest one along the body that is seen there."""
+    rows, columns = inverse.shape
+    u, v = np.rint(pixels).astype(np.intp).T
+    u, v = np.clip(u, 1, columns - 2), np.clip(v, 1, rows - 2)
+    value, mine = inverse[v, u], number[v, u]
+    result = value.copy()
+    for (du, dv), offset in (((1, 0), pixels[:, 0] - u), ((0, 1), pixels[:, 1] - v)):
+        slopes = []
+        for sign in (1, -1):
+            there = v + sign * dv, u + sign * du
+            slopes.append(np.where(number[there] == mine, sign * (inverse[there] - value), np.inf))
+        # Where both neighbours belong to the body, the smaller slope is the one that does not jump.
+        slope = np.where(np.abs(slopes[0]) <= np.abs(slopes[1]), slopes[0], slopes[1])
+        result += np.where(np.isfinite(slope), slope, 0) * offset
+    return result
 
 
 def _resample(picture: Array, pixels: Float[Array, "rows columns 2"], kernel: int) -> Array:

@@ -90,7 +90,8 @@ def _pencil(size: tuple[float, ...], colour: Colour) -> Shape:
         raise BadParameter("length of a pencil", length, f"at least 6 diameters, {6 * diameter:g} m")
     outer, half = diameter / np.sqrt(3), length / 2
     shoulder, lead, cap = half - 2.6 * diameter, half - 0.75 * diameter, -half + 1.2 * diameter
-    narrow, point = outer * 0.75 / 2.6, outer * 0.04
+    point = outer * 0.04
+    narrow = point + (outer - point) * 0.75 / 2.6  # on the straight line from shoulder to point
     rings = [
         _ring(x, r, 6)
         for x, r in ((-half, outer), (cap, outer), (shoulder, outer), (lead, narrow), (half, point))

@@ -1,0 +1,107 @@
+"""Pictures of a cell with the truth about them: who is where, what is seen of it, and how it moves."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from vision_robot.geometry import SE3, Camera
+from vision_robot.sim.cell import Cell
+from vision_robot.sim.cell_design import StationCamera
+from vision_robot.sim.cell_model import BACKGROUND
+from vision_robot.sim.object_truth import ObjectTruth, object_truth
+from vision_robot.sim.render import Renderer
+from vision_robot.types import Array, Float, Image, Int
+
+__all__ = ["TruthFrame", "TruthRenderer"]
+
+
+@dataclass(frozen=True)
+class TruthFrame:
+    """One picture and everything known about it."""
+
+    time_s: float
+    camera: Camera
+    cam_from_station: SE3
+    image: Image
+    """Blue-green-red, as an ideal sensor would see it."""
+    bodies: Int[Array, "height width"]
+    """MuJoCo's body at each pixel centre, counted from 1; 0: nothing that was drawn."""
+    thing_of_body: Int[Array, "bodies+1"]
+    """Id of the tracked thing behind each number of `bodies`; 0: none."""
+    cam_from_body: SE3
+    """Pose of every body of the model, a batch; `true_flow` compares two of them."""
+    objects: ObjectTruth
+    depth: Float[Array, "height width"] | None = None
+    """Distance along the optical axis [m] at pixel centres; infinite where nothing is, NaN outside a lens."""
+
+    @property
+    def ids(self) -> Int[Array, "height width"]:
+        """Id of the tracked thing (its place in `Cell.tracked`, from 1) at each pixel centre, 0 for none."""
+        return self.thing_of_body[self.bodies]
+
+
+class TruthRenderer:
+    """A camera in a cell whose pictures come with the truth.
+
+    Use it as a context manager:
+
+        with TruthRenderer(cell, view) as eye:
+            cell.advance(1 / 30)
+            frame = eye.frame()
+
+    The colours are drawn once, with shadows if the design has them; all the rest takes one more draw in which
+    each body has its number: no light, no shadow, one sample at each pixel centre, and, unless
+    `depth` is asked for, without table and floor, which hide nothing. Depth comes from that same draw.
+    """
+
+    def __init__(self, cell: Cell, view: StationCamera, *, multisamples: int = 4, depth: bool = False):
+        self.cell, self.view, self.depth = cell, view, depth
+        shadows = cell.design.lights.shadows
+        self._renderer = Renderer(cell.model, cell.data, multisamples=multisamples, shadows=shadows)
+        things = np.zeros(cell.model.nbody + 1, dtype=np.uint8 if len(cell.tracked) < 256 else np.uint16)
+        things[cell.bodies + 1] = np.arange(1, len(cell.tracked) + 1)
+        self._thing_of_body = things
+        solid = np.bincount(cell.model.geom_bodyid, cell.model.geom_group != BACKGROUND, cell.model.nbody) > 0
+        self._hides = np.concatenate([[False], solid])
+
+    def picture(self, cam_from_station: SE3 | None = None) -> Image:
+        """Colours only: blue-green-red, as an ideal sensor would see it."""
+        return self._renderer.render(self.view.camera, self._base_from_cam(cam_from_station))
+
+    def frame(self, cam_from_station: SE3 | None = None) -> TruthFrame:
+        """The picture of this moment and the truth about it, seen from the view's place or another one."""
+        cell, camera = self.cell, self.view.camera
+        base_from_cam = self._base_from_cam(cam_from_station)
+        image = self._renderer.render(camera, base_from_cam)
+        fallen = (cell.station_from_tracked().translation[:, 2] < -0.005).any()
+        hidden = () if self.depth or fallen else (BACKGROUND,)
+        bodies, depth = self._renderer.bodies(camera, base_from_cam, hidden_groups=hidden, depth=self.depth)
+        data = cell.data
+        base_from_body = SE3(data.xmat.reshape(-1, 3, 3).copy(), data.xpos.copy())
+        cam_from_body = base_from_cam.inverse() @ base_from_body
+        return TruthFrame(
+            time_s=cell.time_s,
+            camera=camera,
+            cam_from_station=self.view.cam_from_station if cam_from_station is None else cam_from_station,
+            image=image,
+            bodies=bodies,
+            thing_of_body=self._thing_of_body,
+            cam_from_body=cam_from_body,
+            objects=object_truth(cell, camera, cam_from_body[cell.bodies], bodies, self._hides | fallen),
+            depth=depth,
+        )
+
+    def close(self) -> None:
+        """Free the OpenGL context."""
+        self._renderer.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()
+
+    def _base_from_cam(self, cam_from_station: SE3 | None) -> SE3:
+        pose = self.view.cam_from_station if cam_from_station is None else cam_from_station
+        return self.cell.base_from_station @ pose.inverse()
