@@ -34,4 +34,8 @@ COMMANDS: dict[str, Command] = {
         "vision_robot_cli.doctor:doctor",
         "What works on this machine: versions, OpenGL, video, GPU, compiler; and how to mend the rest.",
     ),
+    "synth": Command(
+        "vision_robot_cli.synth:synth",
+        "Render a dataset with exact truth from a recipe: tracks, masks, flow, poses.",
+    ),
 }

@@ -54,15 +54,15 @@ def encode_flow(field: FlowField, suffix: str) -> bytes:
         return MAGIC.tobytes() + np.array([width, height], dtype="<i4").tobytes() + values.tobytes()
     if suffix != ".png":
         raise BadParameter("flow file", f"*{suffix}", "named *.png or *.flo")
-    flow = field.flow_px.astype(np.float32, copy=False)
-    size = np.abs(flow).max(axis=-1)
-    known = size <= LARGEST_PX  # not so where it is no number
-    raw = np.zeros((*flow.shape[:2], 3), dtype=np.uint16)
-    codes = flow if known.all() else np.where(known[..., None], flow, -OFFSET / SCALE)
-    raw[..., 2] = np.rint(codes[..., 0] * SCALE + OFFSET)
-    raw[..., 1] = np.rint(codes[..., 1] * SCALE + OFFSET)
-    raw[..., 0] = known
-    raw[..., 0] += known & field.occluded
+    flow = np.ascontiguousarray(field.flow_px, dtype=np.float32)
+    known = cv2.inRange(flow, (-LARGEST_PX,) * 2, (LARGEST_PX,) * 2) != 0  # not so where it is no number
+    codes = cv2.addWeighted(flow, SCALE, flow, 0, OFFSET, dtype=cv2.CV_16U)
+    if not known.all():
+        codes[~known] = 0
+    marks = known.astype(np.uint16)
+    marks += known & field.occluded
+    raw = np.empty((*known.shape, 3), dtype=np.uint16)
+    cv2.mixChannels([marks, codes], [raw], [0, 0, 2, 1, 1, 2])
     return cv2.imencode(".png", raw, FASTEST)[1].tobytes()
 
 

@@ -3,12 +3,13 @@
 from dataclasses import dataclass
 from functools import lru_cache
 
+import cv2
 import numpy as np
 
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3, Camera, pixel_grid
 from vision_robot.sim.truth import TruthFrame
-from vision_robot.types import Array, Bool, Float
+from vision_robot.types import Array, Bool, Float, Int
 
 __all__ = ["TrueFlow", "true_flow"]
 
@@ -33,36 +34,48 @@ def true_flow(before: TruthFrame, after: TruthFrame) -> TrueFlow:
         raise BadParameter("frames for a flow", "without depth", "made by TruthRenderer(..., depth=True)")
     if before.camera != after.camera:
         raise BadParameter("cameras of a flow", (before.camera, after.camera), "the same")
-    camera = before.camera
-    shape = before.bodies.shape
-    flow = np.zeros((*shape, 2), dtype=np.float32)
-    reach = before.depth.astype(float)  # distance along the axis after the motion, in the other picture
-    rays = _rays(camera)
-    for body, motion in _motions(before, after).items():
-        at = np.nonzero(before.bodies == body)
-        moved = _moved(rays[at], before.depth[at], motion)
-        flow[at] = camera.project(moved) - np.stack(at[::-1], axis=-1)
-        reach[at] = moved[:, 2]
-    flow[np.isnan(before.depth)] = np.nan
-    return TrueFlow(flow, _hidden(before, after, flow, reach))
+    motions = _motions(before, after)
+    # Only what moves, or shows another body in the other picture, is looked at pixel by pixel.
+    asked = _any_of(before.bodies, list(motions)) | (before.bodies != after.bodies)
+    row, column = np.divmod(np.flatnonzero(asked), before.bodies.shape[1])
+    flow = np.zeros((*before.bodies.shape, 2), dtype=np.float32)
+    body, distance = before.bodies[row, column], before.depth[row, column].astype(float)
+    rays = _rays(before.camera)
+    for number, motion in motions.items():
+        mine = np.flatnonzero(body == number)
+        at = row[mine], column[mine]
+        moved = _moved(rays[at], distance[mine], motion)
+        flow[at] = before.camera.project(moved) - np.stack(at[::-1], axis=-1)
+        distance[mine] = moved[:, 2]
+    hidden = np.zeros(before.bodies.shape, dtype=bool)
+    hidden[row, column] = ~_shown(after, row, column, flow[row, column], body, distance)
+    nowhere = np.isnan(before.depth)
+    if nowhere.any():
+        flow[nowhere] = np.nan
+    hidden[nowhere] = True
+    return TrueFlow(flow, hidden)
 
 
 def _motions(before: TruthFrame, after: TruthFrame) -> dict[int, SE3]:
-    """cam_after_from_cam_before of the points of each body in the picture that moves against the camera.
+    """cam_after_from_cam_before of the points of each body that moves against the camera.
 
     Body 0 is what is infinitely far away.
     """
-    motions = {}
-    seen = np.flatnonzero(np.bincount(before.bodies.ravel(), minlength=1))
     camera_motion = after.cam_from_station @ before.cam_from_station.inverse()
-    for body in seen.tolist():
-        motion = camera_motion
-        if body:
-            motion = after.cam_from_body[body - 1] @ before.cam_from_body[body - 1].inverse()
-        moves = motion.rotation - np.eye(3), motion.translation
-        if max(np.abs(part).max() for part in moves) > 1e-12:
-            motions[body] = motion
-    return motions
+    everything = after.cam_from_body @ before.cam_from_body.inverse()
+    motions = {0: camera_motion, **{k + 1: everything[k] for k in range(len(everything))}}
+    return {body: motion for body, motion in motions.items() if _is_motion(motion)}
+
+
+def _is_motion(motion: SE3) -> bool:
+    return max(np.abs(motion.rotation - np.eye(3)).max(), np.abs(motion.translation).max()) > 1e-12
+
+
+def _any_of(bodies: Int[Array, "height width"], numbers: list[int]) -> Bool[Array, "height width"]:
+    """Where one of these bodies is seen."""
+    table = np.zeros(max(256, int(bodies.max()) + 1), dtype=np.uint8)
+    table[[number for number in numbers if number < len(table)]] = 1
+    return (cv2.LUT(bodies, table) if bodies.dtype == np.uint8 else table[bodies]) != 0
 
 
 @lru_cache(maxsize=2)
@@ -83,25 +96,22 @@ def _moved(rays: Float[Array, "n 3"], depth: Float[Array, "n"], motion: SE3) -> 
     return moved
 
 
-def _hidden(
-    before: TruthFrame,
+def _shown(
     after: TruthFrame,
-    flow: Float[Array, "height width 2"],
-    reach: Float[Array, "height width"],
-) -> Bool[Array, "height width"]:
-    """Which points the other picture does not show."""
+    row: Int[Array, "n"],
+    column: Int[Array, "n"],
+    flow: Float[Array, "n 2"],
+    body: Int[Array, "n"],
+    distance: Float[Array, "n"],
+) -> Bool[Array, "n"]:
+    """Which points the other picture shows; each is of a body, at a distance after the motion."""
     assert after.depth is not None
-    height, width = before.bodies.shape
-    camera = before.camera
-    hidden = np.isnan(flow[..., 0])
-    # Where nothing moves and the same body is still seen, nothing is asked.
-    row, column = np.nonzero(~hidden & (flow.any(axis=-1) | (after.bodies != before.bodies)))
-    body, distance = before.bodies[row, column], reach[row, column]
-    u, v = (flow[row, column] + np.stack([column, row], axis=-1)).T
+    height, width = after.bodies.shape
+    u, v = (flow + np.stack([column, row], axis=-1)).T
     inside = (u >= -0.5) & (u <= width - 0.5) & (v >= -0.5) & (v <= height - 0.5)
     left, top = (np.floor(np.where(inside, x, 0)).astype(np.int32) for x in (u, v))
     # How far one pixel's width reaches at that distance: slanted surfaces differ by about so much.
-    tolerance = np.abs(distance) / min(camera.fx, camera.fy)
+    tolerance = np.abs(distance) / min(after.camera.fx, after.camera.fy)
     shown = np.zeros(len(row), dtype=bool)
     for du in (0, 1):
         for dv in (0, 1):
@@ -109,5 +119,4 @@ def _hidden(
             with np.errstate(invalid="ignore"):
                 near = np.abs(after.depth[there] - distance) <= tolerance
             shown |= (after.bodies[there] == body) & (near | (body == 0))
-    hidden[row, column] = ~(inside & shown)
-    return hidden
+    return inside & shown

@@ -19,6 +19,7 @@ of Vision Robot {version}. The same command on the same machine gives the same b
 | `frames/000000.png` ... | the pictures, lossless |
 | `truth/tracks.csv` | a row an object and frame: `frame,time_s,id,u_px,v_px,...`, pose, what is hidden |
 {rows}
+
 `vision_robot.dataset.open_dataset(DIR)` reads all of it; `dataset.json` is a file of camera and
 work plane too. Pixels: (0, 0) is the centre of the first one, u right, v down. Lengths in the
 tables are as their names say (px, mm); {{S}}, the station frame, lies on the table, z up.
@@ -27,22 +28,22 @@ Objects: {objects}.
 """
 
 ROWS = {
-    "masks": "| `{pattern}` | id of the object at each pixel, 0 for none |",
-    "coco": "| `{0}` | the same masks as COCO keeps them (run lengths) |",
-    "flow": "| `{pattern}` | true flow to the frame {step} later: KITTI's 16 bits (blue 2: hidden there), or .flo |",
-    "mot": "| `{0}`, `seqinfo.ini` | MOTChallenge: boxes, hidden parts included; last column: visibility |",
+    "masks": "`{pattern}` ... | id of the object at each pixel, 0 for none",
+    "coco": "`{pattern}` | the same masks as COCO keeps them (run lengths)",
+    "flow": "`{pattern}` ... | true flow to the frame {step} later: KITTI's 16 bits (blue 2: hidden), or .flo",
+    "mot": "`{pattern}`, `seqinfo.ini` | MOTChallenge: whole boxes; last column: visibility",
+    "camera": "`{pattern}` | where the station stands before the moving camera",
 }
 
 
 def readme_text(described: dict[str, Any]) -> str:
     """The text for a dataset.json."""
+    files = {**described["truth"], "camera": described.get("camera_motion")}
     rows = []
     for name, row in ROWS.items():
-        where = described["truth"].get(name)
-        if where is not None:
-            rows.append(row.format(**where) if isinstance(where, dict) else row.format(where))
-    if "camera_motion" in described:
-        rows.append(f"| `{described['camera_motion']}` | where the station stands before the moving camera |")
+        if files.get(name):
+            known = files[name] if isinstance(files[name], dict) else {"pattern": files[name]}
+            rows.append("| " + row.format(**{**known, "pattern": known["pattern"].format(0)}) + " |")
     width, height = described["size"]
     objects = "; ".join(f"{one['id']} {one['name']} ({one['shape']})" for one in described["objects"])
     return TEXT.format(

@@ -16,13 +16,16 @@ __all__ = ["RECIPES", "read_recipe", "recipe_names"]
 RECIPES = Path(__file__).parents[1] / "recipes"
 """Where the recipes that come along are; each is named after its file."""
 
+BASE = "base"
+"""What the others extend; nothing to make by itself."""
+
 OTHER_TABLES = ("things", "sensor", "severity")
 DEEPEST = 8
 
 
 def recipe_names() -> list[str]:
     """Names of the recipes that come along."""
-    return sorted(path.stem for path in RECIPES.glob("*.toml"))
+    return sorted(path.stem for path in RECIPES.glob("*.toml") if path.stem != BASE)
 
 
 def read_recipe(recipe: str | Path) -> Recipe:
@@ -39,7 +42,7 @@ def _found(recipe: str, beside: Path) -> Path:
         if not path.is_file():
             raise BadRecipe(recipe, "there is no such file")
         return path
-    if recipe not in recipe_names():
+    if recipe not in (*recipe_names(), BASE):
         raise BadRecipe(
             repr(recipe),
             f"there is none of this name{_nearest(recipe, recipe_names())}; "

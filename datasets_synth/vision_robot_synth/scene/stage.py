@@ -5,12 +5,18 @@ from typing import Any
 
 import numpy as np
 
+from vision_robot.geometry import plane_from_pixels
 from vision_robot.sim.cell import Cell
 from vision_robot.sim.gl import load_mujoco
 from vision_robot_synth.scene.reach import ArmCourse, course_of
 from vision_robot_synth.scene.scene import Scene
 
 __all__ = ["Stage"]
+
+NOT_DRAWN = 5
+"""A group of geoms that MuJoCo leaves out of pictures."""
+SWAY, FARTHEST_M = 4.0, 5.0
+"""A shaking camera's farthest swing in standard deviations; how far away the border it sees can be."""
 
 
 class Stage:
@@ -25,6 +31,7 @@ class Stage:
         self.scene, self.cell = scene, Cell(scene.design)
         # Shutters open before a frame's time: the first one's opening is the cell's time 0.
         self._lead_s = scene.sensor.shutter / scene.recipe.video.fps / 2
+        self._leave_out_what_nobody_sees()
         self._course = self._planned_course()
         self._time_s, self.next_frame = -self._lead_s, 0
         self._go(self._time_s)
@@ -75,6 +82,17 @@ class Stage:
             cell.follow(np.array([0.0, gone]), np.stack([before, after]), np.array([gap, next_gap]))
         self.scene.lamp.shine(cell, time_s)
         self._time_s = time_s
+
+    def _leave_out_what_nobody_sees(self) -> None:
+        """Where the table fills the picture the floor below it need not be drawn; a quarter of the time."""
+        table, camera = self.scene.design.table, self.scene.view.camera
+        u, v = np.arange(-1, camera.width + 1.0), np.arange(-1, camera.height + 1.0)
+        border = [(a, b) for a in u for b in v[[0, -1]]] + [(a, b) for a in u[[0, -1]] for b in v]
+        places = plane_from_pixels(camera, self.scene.view.cam_from_station, np.array(border))
+        sway = SWAY * (self.scene.shake.place_m + self.scene.shake.turn_rad * FARTHEST_M)
+        half = np.array(table.size_m) / 2 - sway
+        if (np.abs(places - np.array(table.middle_m)) < half).all():  # not so where there is no place
+            self.cell.model.geom("floor").group = NOT_DRAWN
 
     def _planned_course(self) -> ArmCourse | None:
         arm, cell = self.scene.arm, self.cell

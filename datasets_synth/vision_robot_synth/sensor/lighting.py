@@ -17,14 +17,18 @@ SHADE_WIDTH = 0.35
 
 
 @lru_cache(maxsize=8)
-def vignette(size: tuple[int, int], loss: float) -> Float[Array, "height width"]:
-    """Gain 1 in the middle and ``1 - loss`` in the corners, falling with the fourth power of a cosine."""
+def vignette(size: tuple[int, int], loss: float) -> Float[Array, "height width 3"]:
+    """Gain 1 in the middle and ``1 - loss`` in the corners, falling with the fourth power of a cosine.
+
+    The same for all channels; it has them because arrays of one shape multiply four times as fast.
+    """
     width, height = size
     u, v = (np.arange(n, dtype=np.float32) - (n - 1) / 2 for n in (width, height))
     square = (u**2 + v[:, None] ** 2) / (u[0] ** 2 + v[0] ** 2)
     # cos^4 of the angle off the axis is 1 / (1 + tan^2)^2, and tan grows with the radius.
     corner = 1 / np.sqrt(1 - loss) - 1
-    return (1 / (1 + corner * square) ** 2).astype(np.float32)
+    gain = (1 / (1 + corner * square) ** 2).astype(np.float32)
+    return np.repeat(gain[..., None], 3, axis=2)
 
 
 def channel_gains(

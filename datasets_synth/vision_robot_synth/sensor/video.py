@@ -82,20 +82,23 @@ class VideoSensor:
         """The frame whose picture arrives at `frame`: itself, or an earlier one where it was dropped."""
         return delivered(frame, self.dropped, seed)
 
-    def gain(self, size: tuple[int, int], time_s: float, seed: int) -> Float[Array, "h w c"] | None:
-        """Gain of pixels and channels at a time, broadcast over what it does not depend on; None for 1."""
-        gain = np.ones((1, 1, 1), dtype=np.float32)
-        if self.vignetting:
-            gain = gain * vignette(size, self.vignetting)[..., None]
+    def gain(self, size: tuple[int, int], time_s: float, seed: int) -> Float[Array, "h w 3"] | None:
+        """Gain of each pixel's blue, green and red at a time; None where all are 1."""
+        fields = []
         if self.shade:
-            gain = gain * shade_field(time_s, size, self.shade, self.shade_period_s, seed)[..., None]
+            fields.append(shade_field(time_s, size, self.shade, self.shade_period_s, seed))
         if self.flicker:
             rows = flicker_rows(time_s, size[1], self.flicker, self.flicker_hz, self.readout_s, seed)
-            gain = gain * rows[:, None, None]
-        if self.exposure_drift or self.white_balance_drift:
-            drifts = self.exposure_drift, self.white_balance_drift
-            gain = gain * channel_gains(time_s, *drifts, self.drift_period_s, seed)
-        return None if gain.size == 1 and gain.item() == 1 else gain
+            fields.append(np.repeat(rows[:, None], size[0], axis=1))
+        channels = channel_gains(
+            time_s, self.exposure_drift, self.white_balance_drift, self.drift_period_s, seed
+        )
+        if not fields and (channels == 1).all():
+            return vignette(size, self.vignetting) if self.vignetting else None
+        gain = vignette(size, self.vignetting)
+        for field in fields:
+            gain = gain * cv2.cvtColor(field, cv2.COLOR_GRAY2BGR)
+        return gain if (channels == 1).all() else gain * channels
 
     def expose(self, image: Image, frame: int, time_s: float, seed: int = 0) -> Image:
         """The picture as the camera delivers it; `image` itself where no effect is on.
@@ -106,8 +109,8 @@ class VideoSensor:
         gain = self.gain((image.shape[1], image.shape[0]), time_s, seed)
         if gain is not None:
             if image.ndim == 2:
-                gain = gain[..., gain.shape[2] // 2]
-            light = light * gain
+                gain = gain[..., 1]
+            light = cv2.multiply(light, gain, dtype=cv2.CV_32F)
         if self.read_noise or self.shot_noise:
             if light.dtype == np.uint8:
                 light = light.astype(np.float32)
