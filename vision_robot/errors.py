@@ -19,6 +19,10 @@ __all__ = [
     "BadInput",
     "BadParameter",
     "BadPoseFile",
+    "BadDataset",
+    "BadInput",
+    "BadParameter",
+    "BadRecipe",
     "BadTable",
     "BadVideo",
     "BoardNotFound",
@@ -265,6 +269,22 @@ class BadCornerFile(BadInput):
     def __init__(self, path: object, why: str):
         self.path, self.why = str(path), why
         super().__init__(f"{path} cannot be used as corners: {why}")
+
+
+class BadDataset(BadInput):
+    """A folder is no dataset in a layout that this library reads, or an incomplete one."""
+
+    def __init__(self, path: object, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"{path} cannot be used as a dataset: {why}")
+
+
+class BadRecipe(BadInput):
+    """A recipe of a synthetic dataset cannot be used."""
+
+    def __init__(self, recipe: object, why: str):
+        self.recipe, self.why = str(recipe), why
+        super().__init__(f"recipe {recipe}: {why}")
 
 
 class BadTable(BadInput):

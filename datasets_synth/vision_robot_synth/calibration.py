@@ -11,7 +11,7 @@ from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.board_scene import BoardPrint, render_views
 from vision_robot.sim.viewpoints import board_poses
 from vision_robot.types import Array, Float, Image
-from vision_robot_synth.sensor import Sensor
+from vision_robot_synth.sensor.still import Sensor
 
 __all__ = ["TRUTH", "CalibrationSet", "board_print", "calibration_set"]
 

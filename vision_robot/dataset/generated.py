@@ -1,0 +1,131 @@
+"""Our own layout: what `vr synth` writes.
+
+dataset.json says everything; frames and the truth lie where it says (patterns count from 0). It is
+a file of camera and work plane too.
+"""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vision_robot.dataset.dataset import Dataset, DatasetObject, even_times
+from vision_robot.dataset.folder import picture_size
+from vision_robot.dataset.layout import Layout
+from vision_robot.dataset.numbers import read_words
+from vision_robot.errors import BadCameraFile, BadDataset
+from vision_robot.formats import read_camera
+from vision_robot.geometry import SE3
+from vision_robot.tracks import Tracks
+
+__all__ = ["LAYOUT", "SCHEMA"]
+
+SCHEMA = "vr.dataset/1"
+PATTERN = re.compile(r"[\w./-]*\{:0\dd\}\.\w+")
+
+
+def recognises(folder: Path) -> bool:
+    """A folder with a dataset.json."""
+    return (folder / "dataset.json").is_file()
+
+
+def read(folder: Path) -> Dataset:
+    """A dataset of ours: a video with truth, or a set of calibration views (which has no tracks).
+
+    Raises BadDataset, naming the key, for a dataset.json that is damaged or tells what is not there.
+    """
+    path = folder / "dataset.json"
+    try:
+        described = json.loads(read_words(path))
+    except ValueError as error:
+        raise BadDataset(path, f"it is no JSON ({error})") from error
+    if not isinstance(described, dict) or described.get("schema") != SCHEMA:
+        raise BadDataset(path, f"its schema is not {SCHEMA}")
+    try:
+        return _views(folder, described) if "views" in described else _video(folder, described)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        what = f"key {error} is missing" if isinstance(error, KeyError) else str(error)
+        raise BadDataset(path, f"it is not as this tool writes it: {what}") from error
+
+
+def _video(folder: Path, described: dict[str, Any]) -> Dataset:
+    count, fps = int(described["frames"]["count"]), float(described["fps"])
+    truth = described["truth"]
+    width, height = map(int, described["size"])
+    source = [folder / name for name in _numbered(described["frames"]["pattern"], range(count))]
+    return Dataset(
+        name=str(described["recipe"]),
+        path=folder,
+        layout="vr",
+        size=(width, height),
+        fps=fps,
+        source=source,
+        times_s=even_times(count, fps),
+        truth=Tracks.read(folder / truth["tracks"]),
+        camera=_camera(folder),
+        cam_from_station=_poses(folder, described, count),
+        objects=tuple(_object(one) for one in described["objects"]),
+        flow_files=_files(folder, truth.get("flow"), count),
+        flow_step=int((truth.get("flow") or {}).get("step", 1)),
+        mask_files=_files(folder, truth.get("masks"), count),
+        described=described,
+    )
+
+
+def _views(folder: Path, described: dict[str, Any]) -> Dataset:
+    source = [folder / view["image"] for view in described["views"]]
+    if not source:
+        raise BadDataset(folder, "it has no views")
+    return Dataset(
+        name=str(described["recipe"]),
+        path=folder,
+        layout="vr",
+        size=picture_size(source[0]),
+        fps=1.0,
+        source=source,
+        times_s=even_times(len(source), 1.0),
+        truth=Tracks.empty(),
+        camera=_camera(folder),
+        described=described,
+    )
+
+
+def _camera(folder: Path) -> Any:
+    try:
+        return read_camera(folder / "dataset.json")
+    except BadCameraFile as error:
+        raise BadDataset(folder / "dataset.json", error.why) from error
+
+
+def _poses(folder: Path, described: dict[str, Any], count: int) -> SE3 | None:
+    if "camera_motion" in described:
+        table = np.loadtxt(folder / described["camera_motion"], delimiter=",", skiprows=1, ndmin=2)
+        if table.shape != (count, 7):
+            raise BadDataset(folder, f"{described['camera_motion']} has not 7 columns and {count} rows")
+        return SE3.from_rotvec(table[:, 1:4], table[:, 4:7])
+    pose = described.get("cam_from_station")
+    return pose and SE3.from_rotvec(np.array(pose["rotvec_rad"]), np.array(pose["translation_m"]))
+
+
+def _object(one: dict[str, Any]) -> DatasetObject:
+    rest = {key: value for key, value in one.items() if key not in ("id", "name")}
+    return DatasetObject(int(one["id"]), str(one["name"]), rest)
+
+
+def _files(folder: Path, where: dict[str, Any] | None, count: int) -> dict[int, Path]:
+    if not where:
+        return {}
+    frames = range(count - int(where.get("step", 0)))
+    return {i: folder / name for i, name in zip(frames, _numbered(where["pattern"], frames), strict=True)}
+
+
+def _numbered(pattern: str, numbers: range) -> list[str]:
+    """The names of numbered files; a pattern that leads out of the folder is refused."""
+    if not PATTERN.fullmatch(pattern) or pattern.startswith("/") or ".." in pattern:
+        raise ValueError(f"pattern {pattern!r}")
+    return [pattern.format(number) for number in numbers]
+
+
+LAYOUT = Layout("dataset.json", recognises, read)

@@ -1,0 +1,44 @@
+"""The layouts that can be read, and the choice among them."""
+
+from importlib import import_module
+from pathlib import Path
+
+from vision_robot.dataset.dataset import Dataset
+from vision_robot.dataset.layout import Layout
+from vision_robot.errors import BadDataset, BadParameter
+
+__all__ = ["LAYOUTS", "open_dataset"]
+
+LAYOUTS: dict[str, str] = {
+    "vr": "vision_robot.dataset.generated:LAYOUT",
+    "mot": "vision_robot.dataset.mot:LAYOUT",
+    "otb": "vision_robot.dataset.otb:LAYOUT",
+    "middlebury": "vision_robot.dataset.middlebury:LAYOUT",
+}
+"""Name -> where the layout is; the order is the order of recognition."""
+
+
+def open_dataset(path: Path | str, layout: str | None = None) -> Dataset:
+    """The dataset in a folder; its layout is recognised unless it is given.
+
+    Raises BadDataset where nothing is recognised, and what the layout's reader raises.
+    """
+    folder = Path(path)
+    if layout is not None and layout not in LAYOUTS:
+        raise BadParameter("layout", layout, f"one of {', '.join(LAYOUTS)}")
+    if folder.name == "dataset.json":
+        folder = folder.parent
+    if not folder.is_dir():
+        raise BadDataset(path, "there is no such folder")
+    if layout:
+        return _layout(layout).read(folder)
+    for name in LAYOUTS:
+        if _layout(name).recognises(folder):
+            return _layout(name).read(folder)
+    marks = ", ".join(f"{_layout(name).mark} ({name})" for name in LAYOUTS)
+    raise BadDataset(path, f"none of these is in it: {marks}")
+
+
+def _layout(name: str) -> Layout:
+    module, attribute = LAYOUTS[name].split(":")
+    return getattr(import_module(module), attribute)
