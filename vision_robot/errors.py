@@ -42,6 +42,7 @@ __all__ = [
     "MissingPackage",
     "MixedImageSizes",
     "NoAnswer",
+    "NoColour",
     "NoConvergence",
     "NoImages",
     "NoScheduler",
@@ -347,6 +348,15 @@ class BadFrame(BadInput):
     def __init__(self, index: int, why: str):
         self.index, self.why = index, why
         super().__init__(f"frame {index} cannot be used: {why}")
+
+
+class NoColour(BadInput):
+    """The first frame does not show a colour to track."""
+
+    def __init__(self, colour: str | None = None):
+        self.colour = colour
+        what = f"{colour} is not in the first frame" if colour else "no colour stands out in the first frame"
+        super().__init__(f"{what}: pick a point or a region of the object (see `vr track pick`)")
 
 
 class BrokenPlugin(BadInput):

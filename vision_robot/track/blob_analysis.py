@@ -103,16 +103,9 @@ def _renumbered(runs: Runs, row: Int[Array, "m"]) -> Runs:
 
 def _weighed(runs: Runs, weight: Array, origin: Float[Array, "n 2"]) -> Moments:
     """Moments with each pixel's own weight."""
-    at, u, v = pixels_of(runs)
+    label, u, v = runs.pixels()
+    at = label - 1
     w = np.asarray(weight)[v, u].astype(float)
     if not (np.isfinite(w).all() and (np.bincount(at, w, minlength=len(origin)) > 0).all()):
         raise BadParameter("weight of a blob's pixels", "0 or not a number", "finite, with a positive sum")
     return Moments.of_pixels(at, u, v, w, origin)
-
-
-def pixels_of(runs: Runs) -> tuple[Int[Array, "k"], Int[Array, "k"], Int[Array, "k"]]:
-    """Row of the blob (label less 1), u and v of every pixel."""
-    length = runs.stop - runs.first
-    before = np.cumsum(length) - length
-    u = np.arange(int(length.sum())) + np.repeat(runs.first - before, length)
-    return np.repeat(runs.label - 1, length), u, np.repeat(runs.v, length)

@@ -53,6 +53,24 @@ class Runs:
         kept = label > 0
         return cls(label[kept], v[kept], first[kept], (first + length)[kept], int(label.max(initial=0)))
 
+    def pixels(self) -> tuple[Int[Array, "k"], Int[Array, "k"], Int[Array, "k"]]:
+        """Label, u and v of every pixel."""
+        length = self.stop - self.first
+        before = np.cumsum(length) - length
+        u = np.arange(int(length.sum())) + np.repeat(self.first - before, length)
+        return np.repeat(self.label, length), u, np.repeat(self.v, length)
+
+    def moved(self, left: int, top: int) -> "Runs":
+        """The same in a larger picture, whose corner lies so far to the left and above."""
+        return Runs(self.label, self.v + top, self.first + left, self.stop + left, self.count)
+
+    def painted(self, values: Array, shape: tuple[int, int]) -> Array:
+        """A picture in which each pixel of blob i has values[i - 1], and 0 where no blob is."""
+        picture = np.zeros(shape, dtype=values.dtype)
+        label, u, v = self.pixels()
+        picture[v, u] = values[label - 1]
+        return picture
+
     def boxes(self) -> tuple[Int[Array, "n"], Int[Array, "n 4"]]:
         """Labels that have a run, and (first u, first v, last u + 1, last v + 1) of each."""
         order = np.argsort(self.label, kind="stable")

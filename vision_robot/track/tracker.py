@@ -1,7 +1,7 @@
 """What every tracker is: frames in, one at a time, blobs out."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import Any, ClassVar, final
 
 from vision_robot.track.admission import Admission
@@ -67,16 +67,14 @@ class Tracker(ABC):
 
 
 class LooksAhead(ABC):
-    """What a tracker is besides when it can learn from the first frames before it answers for them.
+    """What a tracker is besides when it can learn from the beginning of a video before it answers for it.
 
     Only recorded videos can be looked ahead in; without it a tracker learns as it goes.
     """
 
-    @property
     @abstractmethod
-    def look_ahead(self) -> int:
-        """How many frames it wants to see."""
+    def learn(self, frames: Iterable[tuple[Array, float]]) -> None:
+        """See frames and their times [s] from the video's start, as many as are wanted.
 
-    @abstractmethod
-    def learn(self, frames: Sequence[Image]) -> None:
-        """See the first frames, as `find` would get them; they are given to `step` again afterwards."""
+        Frames are of any kind that `step` takes, and are given to it again afterwards.
+        """
