@@ -73,6 +73,7 @@ COMMANDS: dict[str, Command | Group] = {
     "undistort": Command(
         "vision_robot_cli.undistort:undistort",
         "Pictures or a video without lens distortion, and the camera they then have.",
+    ),
     "synth": Command(
         "vision_robot_cli.synth:synth",
         "Render a dataset with exact truth from a recipe: tracks, masks, flow, poses.",

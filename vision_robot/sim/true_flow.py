@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from functools import lru_cache
 
-import cv2
 import numpy as np
 
 from vision_robot.errors import BadParameter
@@ -60,30 +59,6 @@ def _motions(
     before: TruthFrame, after: TruthFrame
 ) -> tuple[Bool[Array, "bodies+1"], Float[Array, "bodies+1 3 3"], Float[Array, "bodies+1 3"]]:
     """Which bodies move against the camera, and cam_after_from_cam_before of the points of each.
-    motions = _motions(before, after)
-    # Only what moves, or shows another body in the other picture, is looked at pixel by pixel.
-    asked = _any_of(before.bodies, list(motions)) | (before.bodies != after.bodies)
-    row, column = np.divmod(np.flatnonzero(asked), before.bodies.shape[1])
-    flow = np.zeros((*before.bodies.shape, 2), dtype=np.float32)
-    body, distance = before.bodies[row, column], before.depth[row, column].astype(float)
-    rays = _rays(before.camera)
-    for number, motion in motions.items():
-        mine = np.flatnonzero(body == number)
-        at = row[mine], column[mine]
-        moved = _moved(rays[at], distance[mine], motion)
-        flow[at] = before.camera.project(moved) - np.stack(at[::-1], axis=-1)
-        distance[mine] = moved[:, 2]
-    hidden = np.zeros(before.bodies.shape, dtype=bool)
-    hidden[row, column] = ~_shown(after, row, column, flow[row, column], body, distance)
-    nowhere = np.isnan(before.depth)
-    if nowhere.any():
-        flow[nowhere] = np.nan
-    hidden[nowhere] = True
-    return TrueFlow(flow, hidden)
-
-
-def _motions(before: TruthFrame, after: TruthFrame) -> dict[int, SE3]:
-    """cam_after_from_cam_before of the points of each body that moves against the camera.
 
     Body 0 is what is infinitely far away: it moves as the camera does.
     """
@@ -93,20 +68,6 @@ def _motions(before: TruthFrame, after: TruthFrame) -> dict[int, SE3]:
     t = np.concatenate([camera_motion.translation[None], motion.translation])
     change = np.maximum(np.abs(R - np.eye(3)).max(axis=(1, 2)), np.abs(t).max(axis=1))
     return change > 1e-12, R, t
-    everything = after.cam_from_body @ before.cam_from_body.inverse()
-    motions = {0: camera_motion, **{k + 1: everything[k] for k in range(len(everything))}}
-    return {body: motion for body, motion in motions.items() if _is_motion(motion)}
-
-
-def _is_motion(motion: SE3) -> bool:
-    return max(np.abs(motion.rotation - np.eye(3)).max(), np.abs(motion.translation).max()) > 1e-12
-
-
-def _any_of(bodies: Int[Array, "height width"], numbers: list[int]) -> Bool[Array, "height width"]:
-    """Where one of these bodies is seen."""
-    table = np.zeros(max(256, int(bodies.max()) + 1), dtype=np.uint8)
-    table[[number for number in numbers if number < len(table)]] = 1
-    return (cv2.LUT(bodies, table) if bodies.dtype == np.uint8 else table[bodies]) != 0
 
 
 @lru_cache(maxsize=2)
@@ -155,23 +116,6 @@ def _hidden(
     tolerance = np.abs(reach) / min(after.camera.fx, after.camera.fy)
     shown = np.zeros(len(at), dtype=bool)
     bodies, depths = after.bodies.ravel(), after.depth.ravel()
-def _shown(
-    after: TruthFrame,
-    row: Int[Array, "n"],
-    column: Int[Array, "n"],
-    flow: Float[Array, "n 2"],
-    body: Int[Array, "n"],
-    distance: Float[Array, "n"],
-) -> Bool[Array, "n"]:
-    """Which points the other picture shows; each is of a body, at a distance after the motion."""
-    assert after.depth is not None
-    height, width = after.bodies.shape
-    u, v = (flow + np.stack([column, row], axis=-1)).T
-    inside = (u >= -0.5) & (u <= width - 0.5) & (v >= -0.5) & (v <= height - 0.5)
-    left, top = (np.floor(np.where(inside, x, 0)).astype(np.int32) for x in (u, v))
-    # How far one pixel's width reaches at that distance: slanted surfaces differ by about so much.
-    tolerance = np.abs(distance) / min(after.camera.fx, after.camera.fy)
-    shown = np.zeros(len(row), dtype=bool)
     for du in (0, 1):
         for dv in (0, 1):
             there = np.clip(top + dv, 0, height - 1) * width + np.clip(left + du, 0, width - 1)
@@ -179,6 +123,3 @@ def _shown(
                 near = np.abs(depths[there] - reach) <= tolerance
             shown |= (bodies[there] == body) & (near | (body == 0))
     return ~(inside & shown)
-                near = np.abs(after.depth[there] - distance) <= tolerance
-            shown |= (after.bodies[there] == body) & (near | (body == 0))
-    return inside & shown
