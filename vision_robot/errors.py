@@ -18,6 +18,7 @@ __all__ = [
     "BadGoal",
     "BadInput",
     "BadParameter",
+    "BadPath",
     "BadPoseFile",
     "BadDataset",
     "BadRecipe",
@@ -41,12 +42,14 @@ __all__ = [
     "NoConvergence",
     "NoImages",
     "NoScheduler",
+    "NothingSeen",
     "PeerFailed",
     "TooFewPoses",
     "TooFewViews",
     "UnknownStructure",
     "OffPlane",
     "UnlevelBoard",
+    "Unreachable",
     "UnreadableImage",
     "UnwritableOutput",
     "VisionRobotError",
@@ -121,6 +124,23 @@ class PeerFailed(VisionRobotError):
     def __init__(self, command: str, why: str):
         self.command, self.why = command, why
         super().__init__(f"'{command}' failed: {why}")
+
+
+class NothingSeen(VisionRobotError):
+    """A tracker says nothing of an object that is there."""
+
+    def __init__(self, tracker: str, name: str):
+        self.tracker, self.name = tracker, name
+        super().__init__(f"tracker {tracker} does not see {name}")
+
+
+class Unreachable(VisionRobotError):
+    """No joint values bring the tool to a goal."""
+
+    def __init__(self, position_m: Sequence[float], short_m: float):
+        self.position_m, self.short_m = tuple(map(float, position_m)), short_m
+        where = ", ".join(f"{1000 * x:.0f}" for x in self.position_m)
+        super().__init__(f"the arm cannot reach ({where}) mm of the station: {1000 * short_m:.1f} mm are missing")
 
 
 class BadInput(VisionRobotError):
@@ -394,6 +414,14 @@ class BadGoal(BadInput):
     def __init__(self, row: int, why: str, where: str = "goal"):
         self.row, self.why, self.where = row, why, where
         super().__init__(f"{where} {row} cannot be used: {why}")
+
+
+class BadPath(BadInput):
+    """No branch of an arm follows a path to its end."""
+
+    def __init__(self, share: float, why: str):
+        self.share, self.why = share, why
+        super().__init__(f"the path can be followed for {100 * share:.0f} % of its way: {why}")
 
 
 class MissingLimits(BadArm):
