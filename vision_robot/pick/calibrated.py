@@ -2,10 +2,12 @@
 
 import numpy as np
 
+from vision_robot.arm.ik import InverseKinematics
 from vision_robot.calibrate import Corners, Settings, calibrate
 from vision_robot.calibrate.boards import Chessboard
 from vision_robot.extrinsics.plane import fit_plane, on_station
 from vision_robot.geometry import SE3, KnownCamera
+from vision_robot.pick.goal import joints_for, station_from_grasp
 from vision_robot.pick.knowledge import Knowledge
 from vision_robot.pick.world import World
 from vision_robot.sim.viewpoints import board_poses
@@ -53,10 +55,16 @@ def _seen(world: World, cam_from_board: SE3, name: str, rng: np.random.Generator
 
 def _touched(world: World, rng: np.random.Generator) -> SE3:
     """base_from_station from where the arm believes its tool is while it touches the marks."""
-    base = world.design.base_from_station
-    # The encoders' offset is in it too: the tool is at the mark, and told elsewhere.
-    believed = base.apply(MARKS) + rng.normal(0, world.touch_noise_m, MARKS.shape)
-    return rigid_fit(MARKS, believed)
+    solver, base, near = InverseKinematics(world.arm), world.design.base_from_station, None
+    believed = []
+    for mark in MARKS:
+        goal = station_from_grasp(mark[:2], 0.0, float(mark[2]))
+        near = np.mean(world.arm.chain.limits, axis=1) if near is None else near
+        near = joints_for(solver, base, goal, near)
+        # The tool is at the mark; where it is believed to be, the encoders tell.
+        believed.append(world.arm.chain.base_from_tool(world.told_joints(near)).translation)
+    noise = rng.normal(0, world.touch_noise_m, MARKS.shape)
+    return rigid_fit(MARKS, np.array(believed) + noise)
 
 
 def rigid_fit(points: Float[Array, "n 3"], moved: Float[Array, "n 3"]) -> SE3:

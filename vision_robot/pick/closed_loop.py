@@ -169,7 +169,7 @@ def _continuous(loop: ClosedLoop, player: Player, first: Sighting, step: Step) -
     world, target, still = player.world, first, 0
     height, period = LOOK_M[1], 1 / world.frame_rate
     loop.go(player, first, height)
-    on_the_way: deque[tuple[float, Float[Array, 2], Float[Array, n]]] = deque()
+    on_the_way: deque[tuple[float, Array, Array]] = deque()
     end = player.cell.time_s + MOST_SECONDS
     while player.cell.time_s < end and still < STILL_FRAMES:
         on_the_way.append((player.cell.time_s, loop.look(player), player.joints))

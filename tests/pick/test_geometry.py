@@ -1,0 +1,126 @@
+"""From pixel to joints: the laws that each step of the chain obeys."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vision_robot.arm import read_arm
+from vision_robot.arm.ik import InverseKinematics
+from vision_robot.errors import BadParameter, Unreachable
+from vision_robot.geometry import SE3, Camera, WorkPlane
+from vision_robot.pick.calibrated import rigid_fit
+from vision_robot.pick.episode import miss_of
+from vision_robot.pick.goal import joints_for, station_from_grasp, upright
+from vision_robot.pick.knowledge import STAGES, Knowledge
+from vision_robot.pick.servoing import image_step, interaction_matrix
+from vision_robot.pick.sighting import Seen, sighting
+from vision_robot.pick.world import ordinary_world
+
+RNG = np.random.default_rng(0)
+ANGLE = st.floats(-np.pi, np.pi)
+CAMERA = Camera(640, 480, 700, 705, 320, 236, 0.0, "brown5", (-0.1, 0.03, 1e-3, 0, 0))
+LOOKING_DOWN = ordinary_world().view.cam_from_station
+PLANE = WorkPlane.exact(CAMERA, LOOKING_DOWN)
+
+
+@given(ANGLE, st.floats(-0.1, 0.1), st.floats(-0.1, 0.1))
+def test_a_thing_is_seen_where_it_lies(yaw, x, y):
+    along = np.array([np.cos(yaw), np.sin(yaw), 0.0])
+    middle = np.array([x, y, 0.005])
+    pixels = CAMERA.project(
+        LOOKING_DOWN.apply(np.stack([middle, middle + 0.03 * along, middle - 0.03 * along]))
+    )
+    ahead = pixels[1] - pixels[2]
+    seen = Seen(pixels[0], float(np.arctan2(ahead[1], ahead[0])), 2 * float(np.linalg.norm(ahead)))
+    found = sighting(PLANE, seen, 0.005)
+    assert np.allclose(found.position_m, [x, y], atol=1e-9)
+    assert (
+        abs((found.yaw_rad - yaw + np.pi / 2) % np.pi - np.pi / 2) < 2e-3
+    )  # the lens bends the line a little
+
+
+@given(ANGLE)
+def test_fingers_close_across_the_axis(yaw):
+    goal = station_from_grasp(np.array([0.1, 0.2]), yaw, 0.03)
+    along = np.array([np.cos(yaw), np.sin(yaw), 0])
+    assert np.linalg.det(goal.rotation) == pytest.approx(1)
+    assert goal.rotation[:, 0] @ along == pytest.approx(0, abs=1e-12)
+    assert goal.rotation[:, 2].tolist() == [0, 0, -1]
+
+
+def test_upright_is_the_least_turn():
+    tilted = SE3.exp(np.array([0.1, 0.2, 0.3, np.pi - 0.05, 0.03, 0.0]))
+    made = upright(tilted)
+    assert np.allclose(made.rotation[:, 2], [0, 0, -1])
+    turn = np.linalg.norm((tilted.inverse() @ made).rotvec())
+    assert turn == pytest.approx(np.arccos(-tilted.rotation[2, 2]), abs=1e-9)
+
+
+def test_joints_bring_the_tool_there_and_far_goals_are_refused():
+    arm = read_arm("column")
+    solver, station = InverseKinematics(arm), SE3(np.eye(3), np.array([0.36, 0, 0.07]))
+    goal = station_from_grasp(np.array([0.03, -0.05]), 0.7, 0.02)
+    near = np.mean(arm.chain.limits, axis=1)
+    q = joints_for(solver, station, goal, near)
+    off = arm.chain.base_from_tool(q).inverse() @ station @ goal
+    assert np.linalg.norm(off.translation) < 1e-6
+    assert abs(off.rotation[2, 2] - 1) < 1e-9
+    faced = joints_for(solver, station, goal, near, back_towards_m=np.array([5.0, 0.0]))
+    assert arm.chain.base_from_tool(faced).rotation[0, 1] < 0  # its back, -y, looks towards +x
+    with pytest.raises(Unreachable, match="mm are missing"):
+        joints_for(solver, station, station_from_grasp(np.array([2.0, 0]), 0, 0.02), near)
+
+
+def test_the_interaction_matrix_is_the_derivative():
+    """Of the image of a still point, for a camera that moves by a small twist (v, w)."""
+    point, step = np.array([0.1, -0.2, 0.8]), 1e-6
+    x, y = point[:2] / point[2]
+    L = interaction_matrix(x, y, point[2])
+    for i in range(6):
+        twist = step * np.eye(6)[i]
+        moved = SE3.exp(twist).inverse().apply(point[None])[0]
+        assert np.allclose((moved[:2] / moved[2] - [x, y]) / step, L[:, i], atol=1e-5)
+
+
+def test_an_image_step_lands_where_it_should():
+    """Newton in the image: each step leaves a hundredth of the error, whatever the lens."""
+    point, goal = np.array([0.02, -0.05, 0.1]), np.array([-0.03, 0.04])
+    wanted = PLANE.pixels(goal[None], z_m=0.1)[0]
+    for _ in range(4):
+        pixel = PLANE.pixels(point[None, :2], z_m=0.1)[0]
+        point[:2] += image_step(CAMERA, LOOKING_DOWN, point, pixel, wanted)
+    assert np.allclose(point[:2], goal, atol=1e-7)
+
+
+def test_rigid_fit_undoes_a_motion():
+    points, pose = RNG.normal(size=(5, 3)), SE3.exp(RNG.normal(size=6))
+    found = rigid_fit(points, pose.apply(points))
+    assert np.allclose(found.as_matrix(), pose.as_matrix())
+
+
+def test_a_miss_is_across_along_and_headless():
+    thing = SE3.from_rotvec(np.array([0, 0, np.pi / 2]), np.array([0.1, 0.2, 0.005]))
+    miss = miss_of(thing, np.array([0.101, 0.203, 0.006]), -np.pi / 2 + 0.01)
+    assert miss.across_m == pytest.approx(-0.001)
+    assert miss.along_m == pytest.approx(0.003)
+    assert miss.height_m == pytest.approx(0.001)
+    assert miss.yaw_rad == pytest.approx(0.01)
+
+
+def test_stages_are_replaced_by_the_truth():
+    world = ordinary_world()
+    wrong = SE3.exp(np.full(6, 0.01))
+    believed = Knowledge(
+        WorkPlane.exact(CAMERA, wrong @ LOOKING_DOWN), wrong @ world.design.base_from_station, world.arm
+    )
+    truth = world.truth
+    mended = believed.corrected(truth, {"plane"})
+    assert np.allclose(mended.plane.cam_from_station.translation, LOOKING_DOWN.translation)
+    assert np.allclose(mended.base_from_station.translation, world.design.base_from_station.translation)
+    assert mended.plane.camera == CAMERA
+    assert believed.corrected(truth, {"calibration"}).plane.camera == world.view.camera
+    assert believed.corrected(truth, {"tracking", "control"}) is not None
+    with pytest.raises(BadParameter, match="luck"):
+        believed.corrected(truth, {"luck"})
+    assert set(STAGES) >= {"calibration", "ik"}
