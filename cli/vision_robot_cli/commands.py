@@ -70,6 +70,10 @@ COMMANDS: dict[str, Command | Group] = {
         "vision_robot_cli.measure:measure",
         "Pixels to millimetres on the work plane, each with its sigma.",
     ),
+    "pick": Command(
+        "vision_robot_cli.pick:pick",
+        "Pick and place in MuJoCo's physics, open or closed loop, with a score and an error budget.",
+    ),
     "undistort": Command(
         "vision_robot_cli.undistort:undistort",
         "Pictures or a video without lens distortion, and the camera they then have.",

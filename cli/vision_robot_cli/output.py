@@ -11,7 +11,17 @@ from typing import TYPE_CHECKING, Any, TypeVar
 if TYPE_CHECKING:
     from rich.console import Console
 
-__all__ = ["LimitMissed", "check_limit", "console", "emit_json", "note", "plain", "progress", "ticking"]
+__all__ = [
+    "LimitMissed",
+    "check_least",
+    "check_limit",
+    "console",
+    "emit_json",
+    "note",
+    "plain",
+    "progress",
+    "ticking",
+]
 
 Item = TypeVar("Item")
 
@@ -31,6 +41,12 @@ def check_limit(name: str, value: float, limit: float | None, unit: str = "") ->
     Call it last: the results are shown and written even when a limit is missed.
     """
     if limit is not None and not value <= limit:
+        raise LimitMissed(name, value, limit, unit)
+
+
+def check_least(name: str, value: float, limit: float | None, unit: str = "") -> None:
+    """As `check_limit` for what should be large: raise LimitMissed where `value` is below the limit."""
+    if limit is not None and not value >= limit:
         raise LimitMissed(name, value, limit, unit)
 
 

@@ -4,7 +4,7 @@ import re
 
 from vision_robot.errors import BadParameter
 
-__all__ = ["length_m", "offset_m", "offset_pair_m", "whole_pair"]
+__all__ = ["length_m", "offset_m", "offset_pair_m", "quantity", "whole_pair"]
 
 METRES = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 
@@ -28,6 +28,29 @@ def length_m(text: str, option: str) -> float:
         raise BadParameter(option, text, allowed)
     # Ten digits: 25 mm is 0.025 m, not 0.025000000000000001.
     return float(f"{length:.10g}")
+
+
+UNITS = {
+    "rad": {"rad": 1.0, "mrad": 1e-3, "deg": 0.017453292519943295, "°": 0.017453292519943295},
+    "m": METRES,
+    "s": {"s": 1.0, "ms": 1e-3},
+    "px": {"px": 1.0, "": 1.0},
+    "levels": {"levels": 1.0, "": 1.0},
+    "": {"": 1.0, "%": 0.01},
+}
+"""SI unit (or share, or levels) -> what may be typed and what it is worth."""
+
+
+def quantity(text: str, unit: str, option: str) -> float:
+    """A number with a unit of the kind of `unit`, in that unit: ``1deg`` in rad. Raises BadParameter."""
+    match = re.fullmatch(r"\s*([-+]?[0-9.]+(?:e[-+]?\d+)?)\s*([a-zµ%°]*)\s*", text, re.IGNORECASE)
+    known = UNITS[unit]
+    worth = known.get(match[2].replace("µ", "u")) if match else None
+    try:
+        return float(match[1]) * worth  # type: ignore[index,operator]
+    except (TypeError, ValueError):
+        units = ", ".join(name or "no unit" for name in known)
+        raise BadParameter(option, text, f"a number with its unit ({units})") from None
 
 
 def whole_pair(text: str, option: str) -> tuple[int, int]:

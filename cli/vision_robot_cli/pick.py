@@ -1,0 +1,48 @@
+"""`vr pick`: episodes of pick and place in the MuJoCo cell."""
+
+from typing import Annotated
+
+import typer
+
+from vision_robot_cli.options import Json, Seed
+
+__all__ = ["pick"]
+
+
+def pick(
+    episodes: Annotated[int, typer.Option(help="How many, each with its own seed.")] = 10,
+    loop: Annotated[str, typer.Option(help="open, or closed by look-move-look, position or image.")] = "open",
+    tracker: Annotated[str, typer.Option(help="Name of the tracker that looks.")] = "rgb",
+    options: Annotated[
+        list[str] | None, typer.Option("--set", help="An option of the tracker: color=red. May be repeated.")
+    ] = None,
+    fault: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="What is wrong with the cell: camera-rotation=1deg, lens=pinhole. May be repeated."
+        ),
+    ] = None,
+    budget: Annotated[
+        bool, typer.Option("--budget", help="Also share the error out among the stages (12 s a seed).")
+    ] = False,
+    min_success: Annotated[
+        float | None, typer.Option(help="Exit with 3 when the share of grasps is below this.")
+    ] = None,
+    workers: Annotated[int, typer.Option(help="Processes.")] = 1,
+    seed: Seed = 0,
+    json: Json = False,
+) -> None:
+    """Pick a rod up and put it down, in physics, by what a calibrated camera sees.
+
+    Example: vr pick --episodes 20 --loop look-move-look --fault camera-rotation=0.5deg
+    """
+    from vision_robot_cli import pick_output
+    from vision_robot_cli.output import check_least, emit_json
+    from vision_robot_cli.pick_run import pick_run
+
+    run = pick_run(episodes, loop, tracker, options or (), fault or (), budget, workers, seed)
+    if json:
+        emit_json("pick", pick_output.as_json(run))
+    else:
+        print(pick_output.as_text(run))
+    check_least("grasp_success", pick_output.grasp_share(run), min_success)
