@@ -3,7 +3,7 @@
 import shlex
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +16,10 @@ from vision_robot_cli.hand_eye_input import HandEyeInput
 from vision_robot_cli.hand_eye_verdict import HandEyeVerdict
 from vision_robot_cli.output import note
 
-__all__ = ["as_json", "as_text", "write_report"]
+if TYPE_CHECKING:
+    from vision_robot_synth.hand_eye import HandEyeSet
+
+__all__ = ["as_json", "as_text", "cell_truth", "write_report"]
 
 AXES = ("x", "y", "z")
 
@@ -134,18 +137,16 @@ def _views(verdict: HandEyeVerdict) -> list[dict[str, Any]]:
     return rows
 
 
-def truth_of(given: HandEyeInput) -> HandEye:
-    """The rendered cell as a hand-eye without error."""
-    truth = given.truth
-    assert truth is not None
-    return HandEye(
-        truth.setup, truth.camera, truth.cell.mount_from_cam, truth.cell.far_from_board, np.zeros((12, 12))
-    )
+def cell_truth(made: "HandEyeSet") -> HandEye:
+    """A rendered cell as a hand-eye without error."""
+    cell = made.cell
+    return HandEye(made.setup, made.camera, cell.mount_from_cam, cell.far_from_board, np.zeros((12, 12)))
 
 
 def _against(result: HandEyeResult, given: HandEyeInput) -> dict[str, Any]:
-    error = hand_eye_error(result.hand_eye, truth_of(given))
-    true = truth_of(given)
+    assert given.truth is not None
+    true = cell_truth(given.truth)
+    error = hand_eye_error(result.hand_eye, true)
     return {
         true.mount_name: _posed(true.mount_from_cam),
         true.far_name: _posed(true.far_from_board),
@@ -164,7 +165,8 @@ def as_text(verdict: HandEyeVerdict, given: HandEyeInput) -> str:
     """The result for a person at a terminal."""
     result, judgement = verdict.result, verdict.judgement
     found, known = result.hand_eye, result.covariance
-    error = hand_eye_error(found, truth_of(given)) if given.truth else None
+    true = cell_truth(given.truth) if given.truth else None
+    error = hand_eye_error(found, true) if true else None
     corners = sum(map(len, result.corners))
     lines = [
         f"{result.setup.name}, from {len(result.names)} views and {corners} corners",
@@ -185,9 +187,9 @@ def as_text(verdict: HandEyeVerdict, given: HandEyeInput) -> str:
         f"arm's own error per axis: {1e3 * noise.noise.shift_m:.3f} mm, "
         f"{np.degrees(noise.noise.turn):.4f} deg; corners {result.noise_px:.3f} px per axis",
     ]
-    if error:
+    if error and true:
         best = min(
-            (float(np.linalg.norm(form.translation - truth_of(given).mount_from_cam.translation)), name)
+            (float(np.linalg.norm(form.translation - true.mount_from_cam.translation)), name)
             for name, (form, _) in result.closed_forms.items()
         )
         lines.append(
@@ -213,14 +215,13 @@ def _row(name: str, unit: str, row: tuple[float, float, float], error: float | N
 def write_report(verdict: HandEyeVerdict, given: HandEyeInput, path: Path, seed: int) -> None:
     """Write --report."""
     from vision_robot.report.hand_eye import hand_eye_page
-
     from vision_robot.report.page import write_page
 
     page = hand_eye_page(
         verdict.result,
         verdict.judgement,
         board=given.board,
-        truth=truth_of(given) if given.truth else None,
+        truth=cell_truth(given.truth) if given.truth else None,
         driven=given.driven,
         command=shlex.join(["vr", *sys.argv[1:]]),
         seed=seed if given.truth else None,

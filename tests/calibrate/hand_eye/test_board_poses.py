@@ -36,7 +36,7 @@ def test_a_wrong_corner_is_named_and_a_view_without_corners_left_out():
 
 
 def test_of_two_poses_of_a_small_board_the_better_one_is_taken():
-    """From afar a tilt and its mirror image look nearly alike; the descent from a linear start finds either."""
+    """From afar a tilt and its mirror image look nearly alike; a descent from one start finds either."""
     camera = Camera(1280, 960, 3000, 3000, 639.5, 479.5)
     x, y = np.meshgrid(np.arange(5), np.arange(4))
     board = 0.02 * np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)

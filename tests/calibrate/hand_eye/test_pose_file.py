@@ -15,13 +15,24 @@ from vision_robot.geometry import SE3
 RNG = np.random.default_rng(1)
 POSES = SE3.from_rotvec(RNG.normal(size=(4, 3)), RNG.uniform(-0.5, 0.5, (4, 3)))
 TURNED = Rotation.from_matrix(POSES.rotation)
-T = POSES.translation
+T, W = POSES.translation, POSES.rotvec()
+SQUARE = ",".join(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
+WHOLE = ",".join(f"m{i}{j}" for i in range(4) for j in range(4))
+
+
+BACK = (POSES.inverse().translation, POSES.inverse().rotvec())
+
+
+def rows(*arrays):
+    """Rows of several arrays as lists."""
+    return zip(*(array.tolist() for array in arrays), strict=True)
 
 
 def text(header: str | None, rows, first=()) -> str:
     lines = [] if header is None else [header]
     names = first or [""] * len(rows)
-    lines += [",".join([*([name] if name else []), *map(repr, map(float, row))]) for name, row in zip(names, rows, strict=True)]
+    for name, row in zip(names, rows, strict=True):
+        lines.append(",".join([*([name] if name else []), *(repr(float(value)) for value in row)]))
     return "\n".join(lines)
 
 
@@ -35,20 +46,20 @@ def text(header: str | None, rows, first=()) -> str:
         text("X_mm,Y_mm,Z_mm,A,B,C", np.c_[1e3 * T, TURNED.as_euler("ZYX", degrees=True)]),
         text("x,y,z,w,p,r", np.c_[T, TURNED.as_euler("xyz", degrees=True)]),
         text("x,y,z,roll,pitch,yaw", np.c_[T, TURNED.as_euler("xyz")]),
-        text(",".join(f"m{i}{j}" for i in range(4) for j in range(4)), POSES.as_matrix().reshape(-1, 16)),
-        text("x,y,z," + ",".join(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)), np.c_[T, POSES.rotation.reshape(-1, 9)]),
+        text(WHOLE, POSES.as_matrix().reshape(-1, 16)),
+        text(f"x,y,z,{SQUARE}", np.c_[T, POSES.rotation.reshape(-1, 9)]),
         text(None, np.c_[T, TURNED.as_rotvec()]),
         text(None, np.c_[T, TURNED.as_quat()]),
         text(None, np.c_[np.arange(4), T, TURNED.as_quat()]),
         text(None, POSES.as_matrix()[:, :3].reshape(-1, 12)),
         "# a remark\n" + text(None, np.c_[T, TURNED.as_quat()]).replace(",", " "),
-        text("image;x;y;z;rx;ry;rz".replace(";", ","), np.c_[T, TURNED.as_rotvec()], ["a", "b", "c", "d"]).replace(",", ";"),
+        text("image,x,y,z,rx,ry,rz", np.c_[T, TURNED.as_rotvec()], list("abcd")).replace(",", ";"),
         json.dumps([{"matrix": m.tolist()} for m in POSES.as_matrix()]),
         json.dumps([m.tolist() for m in POSES.as_matrix()]),
-        json.dumps({"poses": [{"translation_mm": (1e3 * t).tolist(), "rotvec_rad": r.tolist()} for t, r in zip(T, TURNED.as_rotvec(), strict=True)]}),
-        json.dumps([{"position": t.tolist(), "quaternion_xyzw": q.tolist()} for t, q in zip(T, TURNED.as_quat(), strict=True)]),
-        json.dumps([{"base_from_wrist": {"translation_m": t.tolist(), "rotvec_rad": r.tolist()}} for t, r in zip(T, TURNED.as_rotvec(), strict=True)]),
-        json.dumps([{"wrist_from_base": {"translation_m": t.tolist(), "rotvec_rad": r.tolist()}} for t, r in zip(POSES.inverse().translation, POSES.inverse().rotvec(), strict=True)]),
+        json.dumps({"poses": [{"translation_mm": t, "rotvec_rad": r} for t, r in rows(1e3 * T, W)]}),
+        json.dumps([{"position": t, "quaternion_xyzw": q} for t, q in rows(T, TURNED.as_quat())]),
+        json.dumps([{"base_from_wrist": {"translation_m": t, "rotvec_rad": r}} for t, r in rows(T, W)]),
+        json.dumps([{"wrist_from_base": {"translation_m": t, "rotvec_rad": r}} for t, r in rows(*BACK)]),
     ],
 )  # fmt: skip
 def test_every_spelling_gives_the_poses(tmp_path, content):
@@ -95,8 +106,8 @@ def test_joints_alone_and_joints_of_another_arm(tmp_path):
         ("x,x,z,rx,ry,rz\n1,2,3,0,0,0", "two columns are called x"),
         ("1,2,3,4,5", "5 numbers a row"),
         ("x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n0,0,0,1,1,1,1", "line 3: its quaternion is not of length one"),
-        (text("x,y,z," + ",".join(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)), [[0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 1]]), "no rotation"),
-        (text("x,y,z," + ",".join(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)), [[0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, -1]]), "mirror"),
+        (text(f"x,y,z,{SQUARE}", [[0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 1]]), "no rotation"),
+        (text(f"x,y,z,{SQUARE}", [[0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, -1]]), "mirror"),
         ("{", "line 1"),
         ('{"camera": 1}', "a list of poses"),
         ("[1, 2]", "pose 1"),
