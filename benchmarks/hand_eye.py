@@ -27,11 +27,12 @@ from vision_robot.calibrate.hand_eye import (
 from vision_robot.calibrate.hand_eye.judgement.next_pose import next_poses
 from vision_robot.calibrate.hand_eye.setup import setup_named
 from vision_robot.errors import NoConvergence
-from vision_robot.evaluate.hand_eye import hand_eye_error
-from vision_robot.geometry import SE3
+from vision_robot.evaluate.hand_eye import hand_eye_error, place_errors
+from vision_robot.geometry import SE3, HandEye
 from vision_robot.types import Array, Float
 from vision_robot_synth.hand_eye import HandEyeSet, hand_eye_set
 
+NOTHING = np.zeros((12, 12))
 EXACT = ArmNoise(1e-6, 1e-6)
 LINKS = (float(np.radians(0.3)), 1e-3)
 REPEATS = ArmNoise(float(np.radians(0.002)), 0.02e-3)
@@ -131,8 +132,9 @@ def geometry(options: argparse.Namespace) -> tuple[str, list[dict]]:
             hand_eye_set(arm="six-axis", views=20, board=BOARD, noise=REPEATS, link_errors=LINKS, seed=s)
             for s in (seed, seed + 500)
         )
-        true = made.cell.far_from_board.inverse() @ made.true_arm.base_from_wrist(fresh.joints)
-        true = true @ made.cell.mount_from_cam
+        truth = HandEye(
+            "eye-in-hand", made.camera, made.cell.mount_from_cam, made.cell.far_from_board, NOTHING
+        )
         for name, tolerance in (("links as drawn", None), ("links estimated", GeometryTolerance())):
             start = perf_counter()
             result = calibrate_hand_eye(
@@ -150,8 +152,8 @@ def geometry(options: argparse.Namespace) -> tuple[str, list[dict]]:
             if tolerance is None:
                 ends["park-martin"] = result.closed_forms["park-martin"]
             for method, (mount, far) in ends.items():
-                found = far.inverse() @ arm.base_from_wrist(fresh.joints) @ mount
-                off = np.linalg.norm(found.translation - true.translation, axis=1)
+                found = HandEye("eye-in-hand", made.camera, mount, far, NOTHING)
+                off = place_errors(found, arm, truth, made.true_arm, fresh.joints)
                 errors.setdefault(method, []).append(1e3 * float(np.median(off)))
     rows = [[name, f"{np.median(values):.3f} mm"] for name, values in errors.items()]
     text = markdown(("camera's place at 20 other poses", "median error"), rows)

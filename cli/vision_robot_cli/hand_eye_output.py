@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vision_robot.calibrate.hand_eye import HandEyeResult
-from vision_robot.evaluate.hand_eye import hand_eye_error
+from vision_robot.evaluate.hand_eye import hand_eye_error, place_errors
 from vision_robot.formats.hand_eye import hand_eye_object
 from vision_robot.geometry import SE3
 from vision_robot.geometry.hand_eye import HandEye
@@ -78,11 +78,25 @@ def as_json(verdict: HandEyeVerdict, given: HandEyeInput, seed: int) -> dict[str
         ],
         "views": _views(verdict),
         "driven": given.driven,
+        "tool": _tool(verdict),
         "unanswered": judgement.unanswered,
         "truth": _against(result, given) if given.truth else None,
         "seed": seed,
         "seconds": {**given.seconds, "total": sum(given.seconds.values())},
         "version": vision_robot.__version__,
+    }
+
+
+def _tool(verdict: HandEyeVerdict) -> dict[str, Any] | None:
+    tool = verdict.tool
+    if tool is None:
+        return None
+    return {
+        "wrist_from_tool_m": tool.point_m,
+        "covariance_m2": tool.covariance,
+        "sigma_mm": 1e3 * tool.sigma_m,
+        "rms_mm": 1e3 * tool.rms_m,
+        "scatter": tool.scatter,
     }
 
 
@@ -137,6 +151,14 @@ def _views(verdict: HandEyeVerdict) -> list[dict[str, Any]]:
     return rows
 
 
+def _place_error(result: HandEyeResult, made: "HandEyeSet") -> float:
+    """Median error of where the camera is before the board, over the arm's range [m]."""
+    limits, arm = made.cell.arm.limits, made.cell.arm
+    joints = np.random.default_rng(0).uniform(limits[:, 0], limits[:, 1], (500, len(arm)))
+    found = result.geometry.chain if result.geometry else arm
+    return float(np.median(place_errors(result.hand_eye, found, cell_truth(made), made.true_arm, joints)))
+
+
 def cell_truth(made: "HandEyeSet") -> HandEye:
     """A rendered cell as a hand-eye without error."""
     cell = made.cell
@@ -154,6 +176,7 @@ def _against(result: HandEyeResult, given: HandEyeInput) -> dict[str, Any]:
         "turn_error_deg": np.degrees(error.turn),
         "in_sigma": error.in_sigma,
         "chi_square_chance": error.chance,
+        "place_error_mm": 1e3 * _place_error(result, given.truth),
         "closed_form_error_mm": {
             name: 1e3 * np.linalg.norm(mount.translation - true.mount_from_cam.translation)
             for name, (mount, _) in result.closed_forms.items()
@@ -166,7 +189,8 @@ def as_text(verdict: HandEyeVerdict, given: HandEyeInput) -> str:
     result, judgement = verdict.result, verdict.judgement
     found, known = result.hand_eye, result.covariance
     true = cell_truth(given.truth) if given.truth else None
-    error = hand_eye_error(found, true) if true else None
+    # Corrected links take up a part of what the truth counts to the camera: then they cannot be compared.
+    error = hand_eye_error(found, true) if true and not result.geometry else None
     corners = sum(map(len, result.corners))
     lines = [
         f"{result.setup.name}, from {len(result.names)} views and {corners} corners",
@@ -195,6 +219,18 @@ def as_text(verdict: HandEyeVerdict, given: HandEyeInput) -> str:
         lines.append(
             f"error to the truth: {1e3 * error.position_m:.3f} mm, {np.degrees(error.turn):.4f} deg; "
             f"best closed form ({best[1]}) {1e3 * best[0]:.3f} mm"
+        )
+    if given.truth:
+        place = 1e3 * _place_error(result, given.truth)
+        lines.append(f"over the arm's range the camera is misplaced by {place:.3f} mm (median)")
+    if verdict.tool:
+        x, y, z = (
+            f"{1e3 * v:.3f} ± {1e3 * s:.3f}"
+            for v, s in zip(verdict.tool.point_m, verdict.tool.sigma_m, strict=True)
+        )
+        lines.append(
+            f"tool centre in the wrist: x {x}, y {y}, z {z} mm; touches scatter "
+            f"{1e3 * verdict.tool.rms_m:.3f} mm"
         )
     lines += [f"left out: {r.image}: {r.reason}" for r in result.rejected if r.corner is None]
     lost = sum(r.corner is not None for r in result.rejected)

@@ -11,6 +11,7 @@ from vision_robot.formats.hand_eye import read_hand_eye
 from vision_robot_cli.main import run
 from vision_robot_synth.hand_eye import hand_eye_set
 from vision_robot_synth.hand_eye_folder import pose_table_csv, write_hand_eye_set
+from vision_robot_synth.quaternions import quaternions
 
 COMMAND = ("extrinsics", "hand-eye")
 
@@ -108,6 +109,25 @@ def test_a_camera_freed(capsys, corner_set):
     free = run_json(capsys, *corner_set, "--intrinsics", "free")
     assert free["camera"]["fx"] != fixed["camera"]["fx"]
     assert free["camera"]["fx"] == pytest.approx(fixed["camera"]["fx"], rel=0.01)
+
+
+def test_touches_give_the_tool_centre(capsys, corner_set, tmp_path):
+    made = hand_eye_set(views=10, seed=2)
+    rng = np.random.default_rng(0)
+    tip, points = np.array([0.0, 0.0, 0.15]), rng.choice(54, 5, replace=False)
+    turns = made.said.rotation[:5]
+    at = made.cell.far_from_board.apply(made.board.points[points]) - turns @ tip
+    rows = zip(at, quaternions(turns), points, strict=True)
+    lines = [",".join(map(repr, [*map(float, place), *map(float, q), int(k)])) for place, q, k in rows]
+    path = tmp_path / "touches.csv"
+    path.write_text("\n".join(["x_m,y_m,z_m,qw,qx,qy,qz,point", *lines]))
+    found = run_json(capsys, *corner_set, "--touches", path)
+    off = np.array(found["tool"]["wrist_from_tool_m"]) - tip
+    assert (np.abs(off) < 4e-3 * np.array(found["tool"]["sigma_mm"])).all()
+    assert run([*COMMAND, *corner_set, "--touches", str(path)]) == 0
+    assert "tool centre in the wrist" in capsys.readouterr().out
+    path.write_text("\n".join(["x_m,y_m,z_m,qw,qx,qy,qz,point", "0,0,0,1,0,0,0,99"]))
+    assert "0 to 53" in refused(capsys, *corner_set, "--touches", path)
 
 
 def columns(header: str, rows: list[str], keep) -> list[str]:
