@@ -1,9 +1,12 @@
 """Errors of a hand-eye against the truth: in its own perturbation, in its own sigmas."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from tests.views import CAMERAS
-from vision_robot.evaluate.hand_eye import hand_eye_error
+from vision_robot.arm import read_arm
+from vision_robot.evaluate.hand_eye import hand_eye_error, place_errors
 from vision_robot.geometry import SE3, HandEye, rotation_exp
 
 
@@ -23,3 +26,17 @@ def test_a_known_step_is_found():
     assert np.isclose(error.position_m, 2e-3)
     assert np.isclose(error.turn, 1e-3)
     assert np.isclose(error.chance, np.exp(-2.5) * (1 + 2.5 + 2.5**2 / 2))  # chi-square of 5, six degrees
+
+
+def test_what_moves_with_the_last_link_is_no_error_of_place():
+    """A wrist frame chosen otherwise is made up for by the camera's place in it."""
+    chain = read_arm("column").chain
+    change = SE3.exp(0.1 * np.ones(6))
+    other = replace(chain, last_from_wrist=chain.last_from_wrist @ change)
+    joints = np.random.default_rng(0).uniform(chain.limits[:, 0], chain.limits[:, 1], (5, 5))
+    ends = SE3.exp(np.ones(6)), SE3.exp(-np.ones(6))
+    truth = HandEye("eye-in-hand", CAMERAS["pinhole"], *ends, np.zeros((12, 12)))
+    same = replace(truth, mount_from_cam=change.inverse() @ truth.mount_from_cam)
+    assert place_errors(same, other, truth, chain, joints).max() < 1e-12
+    moved = replace(truth, mount_from_cam=SE3(ends[0].rotation, ends[0].translation + 1e-3 * np.eye(3)[2]))
+    assert np.allclose(place_errors(moved, chain, truth, chain, joints), 1e-3)

@@ -3,9 +3,12 @@
 import numpy as np
 import pytest
 
+from vision_robot.calibrate.boards import Chessboard
+from vision_robot.calibrate.hand_eye.board_poses import find_board_poses
 from vision_robot.calibrate.hand_eye.closed_forms import CLOSED_FORMS, closed_form
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3
+from vision_robot_synth.hand_eye import hand_eye_set
 
 RNG = np.random.default_rng(3)
 
@@ -44,6 +47,14 @@ def test_shah_needs_no_axes_where_the_others_have_none():
     arm = SE3.from_rotvec(turns, RNG.normal(size=(5, 3)))
     found, _ = closed_form("shah")(arm, mount.inverse() @ arm @ far)
     assert apart(found, mount) < 1e-9
+
+
+def test_daniilidis_takes_the_right_root_where_a_null_vector_has_no_real_part():
+    """A rendered cell whose two null vectors fall apart into rotation and translation, all but noise."""
+    made = hand_eye_set("eye-to-hand", seed=66, board=Chessboard(11, 8, 0.03))
+    views, _, _ = find_board_poses(made.corners(0.005), made.board.points, made.camera)
+    found, _ = closed_form("daniilidis")(made.said, views.cam_from_board)
+    assert np.linalg.norm(found.translation - made.cell.mount_from_cam.translation) < 2e-3
 
 
 def test_an_unknown_name_is_refused_with_all_names():
