@@ -54,6 +54,14 @@ def hand_eye(
             help="known: as uncertain as the camera file says; fixed: exact; free: estimated afresh."
         ),
     ] = "known",
+    touches: Annotated[
+        Path | None,
+        typer.Option(
+            help="Poses at which the tool's tip touches points of the board, as --poses, with a column "
+            "`point`: "
+            "the point's number. Gives the tool centre too."
+        ),
+    ] = None,
     synthetic: Annotated[
         bool, typer.Option("--synthetic", help="Render a set in MuJoCo and compare with its truth.")
     ] = False,
@@ -88,7 +96,7 @@ def hand_eye(
     from vision_robot.formats.hand_eye import write_hand_eye
     from vision_robot_cli import hand_eye_input, hand_eye_output
     from vision_robot_cli.hand_eye_auto import FIRST_VIEWS, driven, rendered
-    from vision_robot_cli.hand_eye_input import HandEyeOptions
+    from vision_robot_cli.hand_eye_options import HandEyeOptions
     from vision_robot_cli.hand_eye_verdict import solved
     from vision_robot_cli.output import check_limit, emit_json, note
     from vision_robot_cli.target import target
@@ -109,7 +117,7 @@ def hand_eye(
     else:
         chosen = target(board, size, square, board_option or ())
         given = hand_eye_input.from_pictures(images or (), chosen, poses, camera, asked)
-    verdict = solved(given, asked, seed)
+    verdict = solved(given, asked, seed, touches)
     result = verdict.result
     if out:
         write_hand_eye(result.hand_eye, out, result.geometry.chain if result.geometry else None)

@@ -10,7 +10,8 @@ from vision_robot.calibrate.hand_eye.words import millimetres
 from vision_robot.errors import DegeneratePoses, TooFewPoses
 from vision_robot.geometry import KnownCamera
 from vision_robot.types import Image
-from vision_robot_cli.hand_eye_input import HandEyeInput, HandEyeOptions, detected
+from vision_robot_cli.hand_eye_input import HandEyeInput, detected
+from vision_robot_cli.hand_eye_options import HandEyeOptions
 from vision_robot_cli.hand_eye_verdict import solved
 from vision_robot_cli.output import note, progress
 from vision_robot_cli.quantities import length_m

@@ -13,14 +13,13 @@ from vision_robot.calibrate.boards import Board
 from vision_robot.calibrate.corner_files import read_corner_folder, read_model_points
 from vision_robot.calibrate.detect import detect_boards, seen_size
 from vision_robot.calibrate.hand_eye.pose_file import read_poses
-from vision_robot.calibrate.hand_eye.pose_table import LENGTHS, PoseTable, Reading
-from vision_robot.calibrate.hand_eye.rotations import is_euler_order
-from vision_robot.calibrate.hand_eye.setup import setup_named
+from vision_robot.calibrate.hand_eye.pose_table import PoseTable
 from vision_robot.errors import BadParameter, BadPoseFile, BoardNotFound, MixedImageSizes
 from vision_robot.formats import read_known_camera
 from vision_robot.geometry import SE3, KnownCamera, SerialChain
 from vision_robot.images import open_images
 from vision_robot.types import Array, Float, Image
+from vision_robot_cli.hand_eye_options import HandEyeOptions
 from vision_robot_cli.output import note, ticking
 from vision_robot_cli.quantities import length_m
 
@@ -29,78 +28,17 @@ if TYPE_CHECKING:
 
 __all__ = [
     "HandEyeInput",
-    "HandEyeOptions",
     "detected",
     "from_corner_files",
     "from_pictures",
+    "read_touches",
     "keep_set",
     "synthetic_set",
 ]
 
 Result = TypeVar("Result")
 
-INTRINSICS = ("known", "fixed", "free")
 PICTURES_FOR_A_HINT = 4
-
-
-@dataclass(frozen=True)
-class HandEyeOptions:
-    """The options that say what numbers mean and what is estimated."""
-
-    setup: str
-    rotation: str | None
-    pose_unit: str | None
-    angle_unit: str | None
-    inverse: bool
-    arm: str | None
-    geometry: bool
-    intrinsics: str
-
-    def check(self, *, synthetic: bool, auto: bool, given: bool) -> None:
-        """Refuse options that make no sense, before any work is done."""
-        setup_named(self.setup)
-        if self.intrinsics not in INTRINSICS:
-            raise BadParameter("--intrinsics", self.intrinsics, " or ".join(INTRINSICS))
-        if self.pose_unit is not None and self.pose_unit not in LENGTHS:
-            raise BadParameter("--pose-unit", self.pose_unit, " or ".join(LENGTHS))
-        if self.angle_unit not in (None, "rad", "deg"):
-            raise BadParameter("--angle-unit", self.angle_unit, "rad or deg")
-        known = (None, "rotvec", "matrix", "columns")
-        if self.rotation not in known and not (
-            sorted(self.rotation or "") == sorted("wxyz") or is_euler_order(self.rotation or "")
-        ):
-            allowed = (
-                "wxyz, xyzw, rotvec, matrix, columns, or three axes such as xyz (fixed) or ZYX (turning)"
-            )
-            raise BadParameter("--rotation", self.rotation, allowed)
-        if auto and not synthetic:
-            raise BadParameter(
-                "--auto", "without --synthetic", "given with it: the arm that drives is MuJoCo's"
-            )
-        if synthetic and given:
-            raise BadParameter("--synthetic", "with pictures or poses", "given alone")
-        if not synthetic and not given:
-            raise BadParameter("pictures", None, "given with --poses and --camera; or try --synthetic")
-        if self.geometry and not self.arm and not synthetic:
-            raise BadParameter("--geometry", "without --arm", "given with the arm's model")
-
-    def reading(self, table: PoseTable) -> Reading:
-        """What the file's columns say, overruled by the options."""
-        reading = table.reading
-        width = table.turn.shape[1]
-        kinds = {"rotvec": ("rotvec", 3), "matrix": ("matrix", 9), "columns": ("matrix", 9)}
-        if self.rotation is not None and table.has_poses:
-            name = self.rotation
-            kind, wanted = kinds.get(name, ("quaternion", 4) if len(name) == 4 else ("euler", 3))
-            if wanted != width:
-                raise BadParameter("--rotation", name, f"one of {width} numbers, as {table.source} has")
-            reading = replace(reading, kind=kind, order=name, transposed=name == "columns")
-        return replace(
-            reading,
-            length=self.pose_unit or reading.length,
-            angle=self.angle_unit or reading.angle,
-            inverse=reading.inverse != self.inverse,
-        )
 
 
 @dataclass
@@ -175,6 +113,25 @@ def from_corner_files(
     views = {view.image: view for view in read_corner_folder(folder, len(points), leave_out=left_out)}
     rows = paired(files.table, list(views))
     return _joined(str(folder), files, list(views), rows, views, points)
+
+
+def read_touches(
+    path: Path, asked: HandEyeOptions, points: Float[Array, "n 3"]
+) -> tuple[SE3, Float[Array, "t 3"]]:
+    """The option --touches: the arm's poses, and the points of the board that the tip touched."""
+    table = read_poses(path)
+    if not table.has_poses or table.joints is None or "point" not in table.joint_names:
+        raise BadPoseFile(
+            path, "it needs x, y, z, a rotation, and a column `point`: the number of the board's point"
+        )
+    numbers = table.joints[:, table.joint_names.index("point")]
+    for number, row in zip(numbers, table.rows, strict=True):
+        if number != int(number) or not 0 <= number < len(points):
+            raise BadPoseFile(
+                path, f"{row}: point is {number:g}; the board's points are 0 to {len(points) - 1}"
+            )
+    pose = table.read_as(asked.reading(table)).base_from_wrist
+    return pose, points[numbers.astype(int)]
 
 
 def _files(poses: Path | None, camera: Path | None, asked: HandEyeOptions) -> _Files:

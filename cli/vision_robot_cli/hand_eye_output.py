@@ -3,12 +3,12 @@
 import shlex
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from vision_robot.calibrate.hand_eye import HandEyeResult
-from vision_robot.evaluate.hand_eye import hand_eye_error
+from vision_robot.evaluate.hand_eye import hand_eye_error, place_errors
 from vision_robot.formats.hand_eye import hand_eye_object
 from vision_robot.geometry import SE3
 from vision_robot.geometry.hand_eye import HandEye
@@ -16,7 +16,10 @@ from vision_robot_cli.hand_eye_input import HandEyeInput
 from vision_robot_cli.hand_eye_verdict import HandEyeVerdict
 from vision_robot_cli.output import note
 
-__all__ = ["as_json", "as_text", "write_report"]
+if TYPE_CHECKING:
+    from vision_robot_synth.hand_eye import HandEyeSet
+
+__all__ = ["as_json", "as_text", "cell_truth", "write_report"]
 
 AXES = ("x", "y", "z")
 
@@ -75,11 +78,25 @@ def as_json(verdict: HandEyeVerdict, given: HandEyeInput, seed: int) -> dict[str
         ],
         "views": _views(verdict),
         "driven": given.driven,
+        "tool": _tool(verdict),
         "unanswered": judgement.unanswered,
         "truth": _against(result, given) if given.truth else None,
         "seed": seed,
         "seconds": {**given.seconds, "total": sum(given.seconds.values())},
         "version": vision_robot.__version__,
+    }
+
+
+def _tool(verdict: HandEyeVerdict) -> dict[str, Any] | None:
+    tool = verdict.tool
+    if tool is None:
+        return None
+    return {
+        "wrist_from_tool_m": tool.point_m,
+        "covariance_m2": tool.covariance,
+        "sigma_mm": 1e3 * tool.sigma_m,
+        "rms_mm": 1e3 * tool.rms_m,
+        "scatter": tool.scatter,
     }
 
 
@@ -134,18 +151,24 @@ def _views(verdict: HandEyeVerdict) -> list[dict[str, Any]]:
     return rows
 
 
-def truth_of(given: HandEyeInput) -> HandEye:
-    """The rendered cell as a hand-eye without error."""
-    truth = given.truth
-    assert truth is not None
-    return HandEye(
-        truth.setup, truth.camera, truth.cell.mount_from_cam, truth.cell.far_from_board, np.zeros((12, 12))
-    )
+def _place_error(result: HandEyeResult, made: "HandEyeSet") -> float:
+    """Median error of where the camera is before the board, over the arm's range [m]."""
+    limits, arm = made.cell.arm.limits, made.cell.arm
+    joints = np.random.default_rng(0).uniform(limits[:, 0], limits[:, 1], (500, len(arm)))
+    found = result.geometry.chain if result.geometry else arm
+    return float(np.median(place_errors(result.hand_eye, found, cell_truth(made), made.true_arm, joints)))
+
+
+def cell_truth(made: "HandEyeSet") -> HandEye:
+    """A rendered cell as a hand-eye without error."""
+    cell = made.cell
+    return HandEye(made.setup, made.camera, cell.mount_from_cam, cell.far_from_board, np.zeros((12, 12)))
 
 
 def _against(result: HandEyeResult, given: HandEyeInput) -> dict[str, Any]:
-    error = hand_eye_error(result.hand_eye, truth_of(given))
-    true = truth_of(given)
+    assert given.truth is not None
+    true = cell_truth(given.truth)
+    error = hand_eye_error(result.hand_eye, true)
     return {
         true.mount_name: _posed(true.mount_from_cam),
         true.far_name: _posed(true.far_from_board),
@@ -153,6 +176,7 @@ def _against(result: HandEyeResult, given: HandEyeInput) -> dict[str, Any]:
         "turn_error_deg": np.degrees(error.turn),
         "in_sigma": error.in_sigma,
         "chi_square_chance": error.chance,
+        "place_error_mm": 1e3 * _place_error(result, given.truth),
         "closed_form_error_mm": {
             name: 1e3 * np.linalg.norm(mount.translation - true.mount_from_cam.translation)
             for name, (mount, _) in result.closed_forms.items()
@@ -164,7 +188,9 @@ def as_text(verdict: HandEyeVerdict, given: HandEyeInput) -> str:
     """The result for a person at a terminal."""
     result, judgement = verdict.result, verdict.judgement
     found, known = result.hand_eye, result.covariance
-    error = hand_eye_error(found, truth_of(given)) if given.truth else None
+    true = cell_truth(given.truth) if given.truth else None
+    # Corrected links take up a part of what the truth counts to the camera: then they cannot be compared.
+    error = hand_eye_error(found, true) if true and not result.geometry else None
     corners = sum(map(len, result.corners))
     lines = [
         f"{result.setup.name}, from {len(result.names)} views and {corners} corners",
@@ -185,14 +211,26 @@ def as_text(verdict: HandEyeVerdict, given: HandEyeInput) -> str:
         f"arm's own error per axis: {1e3 * noise.noise.shift_m:.3f} mm, "
         f"{np.degrees(noise.noise.turn):.4f} deg; corners {result.noise_px:.3f} px per axis",
     ]
-    if error:
+    if error and true:
         best = min(
-            (float(np.linalg.norm(form.translation - truth_of(given).mount_from_cam.translation)), name)
+            (float(np.linalg.norm(form.translation - true.mount_from_cam.translation)), name)
             for name, (form, _) in result.closed_forms.items()
         )
         lines.append(
             f"error to the truth: {1e3 * error.position_m:.3f} mm, {np.degrees(error.turn):.4f} deg; "
             f"best closed form ({best[1]}) {1e3 * best[0]:.3f} mm"
+        )
+    if given.truth:
+        place = 1e3 * _place_error(result, given.truth)
+        lines.append(f"over the arm's range the camera is misplaced by {place:.3f} mm (median)")
+    if verdict.tool:
+        x, y, z = (
+            f"{1e3 * v:.3f} ± {1e3 * s:.3f}"
+            for v, s in zip(verdict.tool.point_m, verdict.tool.sigma_m, strict=True)
+        )
+        lines.append(
+            f"tool centre in the wrist: x {x}, y {y}, z {z} mm; touches scatter "
+            f"{1e3 * verdict.tool.rms_m:.3f} mm"
         )
     lines += [f"left out: {r.image}: {r.reason}" for r in result.rejected if r.corner is None]
     lost = sum(r.corner is not None for r in result.rejected)
@@ -219,7 +257,7 @@ def write_report(verdict: HandEyeVerdict, given: HandEyeInput, path: Path, seed:
         verdict.result,
         verdict.judgement,
         board=given.board,
-        truth=truth_of(given) if given.truth else None,
+        truth=cell_truth(given.truth) if given.truth else None,
         driven=given.driven,
         command=shlex.join(["vr", *sys.argv[1:]]),
         seed=seed if given.truth else None,

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vision_robot.geometry import SE3
+from vision_robot.geometry import SE3, SerialChain
 from vision_robot.geometry.hand_eye import HandEye
 from vision_robot.types import Array, Float
 
-__all__ = ["HandEyeError", "hand_eye_error"]
+__all__ = ["HandEyeError", "hand_eye_error", "place_errors"]
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,26 @@ def hand_eye_error(found: HandEye, truth: HandEye) -> HandEyeError:
     part = found.covariance[:6, :6] / np.outer(sigma[:6], sigma[:6]) if sigma[:6].all() else np.eye(6)
     square = float(scaled[:6] @ np.linalg.solve(part, scaled[:6]))
     return HandEyeError(step, scaled, float(chdtrc(6, square)))
+
+
+def place_errors(
+    found: HandEye, arm: SerialChain, truth: HandEye, true_arm: SerialChain, joints: Float[Array, "n j"]
+) -> Float[Array, "n"]:
+    """Distance [m] between where the camera is before the board and where it is thought to be.
+
+    Unlike the transforms themselves this can be compared when links were corrected: what is told of the
+    last link and what of the camera is then a matter of choice.
+    """
+    off = (
+        _board_from_cam(found, arm, joints).translation - _board_from_cam(truth, true_arm, joints).translation
+    )
+    return np.linalg.norm(off, axis=1)
+
+
+def _board_from_cam(one: HandEye, arm: SerialChain, joints: Float[Array, "n j"]) -> SE3:
+    wrist = arm.base_from_wrist(joints)
+    far_from_mount = wrist if one.setup == "eye-in-hand" else wrist.inverse()
+    return one.far_from_board.inverse() @ far_from_mount @ one.mount_from_cam
 
 
 def _step(found: SE3, truth: SE3) -> Float[Array, "6"]:

@@ -67,24 +67,27 @@ PARTS = (slice(0, 3), slice(3, 6))
 
 def _score(solved: Weighed) -> Float[Array, "2"]:
     """Derivative of the restricted log-likelihood in each variance."""
-    W, WH, C = solved.weight, solved.weighed_design, solved.covariance
-    pulled = (W @ solved.left[..., None])[..., 0]
-    score = []
-    for part in PARTS:
-        trace = np.einsum("vii->", W[:, part, part]) - np.einsum("vik,kl,vil->", WH[:, part], C, WH[:, part])
-        score.append(0.5 * (np.sum(pulled[:, part] ** 2) - trace))
-    return np.array(score)
+    pulled = (solved.weight @ solved.left[..., None])[..., 0]
+    free = np.diagonal(solved.weight - _told_twice(solved), axis1=1, axis2=2)
+    return np.array([0.5 * np.sum(pulled[:, part] ** 2 - free[:, part]) for part in PARTS])
 
 
 def component_information(solved: Weighed) -> Float[Array, "2 2"]:
     """Fisher information of the variances: half of tr(P D_j P D_k), P = W - W H C H^T W."""
-    W, WH, C = solved.weight, solved.weighed_design, solved.covariance
-    folded = [np.einsum("vik,vil->kl", WH[:, part], WH[:, part]) for part in PARTS]
+    W, WH, C, G = solved.weight, solved.weighed_design, solved.covariance, _told_twice(solved)
+    n, _, s = WH.shape
+    folded = []
+    for part in PARTS:
+        rows = WH[:, part].reshape(3 * n, s)
+        folded.append(C @ (rows.T @ rows))
     information = np.empty((2, 2))
     for j, a in enumerate(PARTS):
         for k, b in enumerate(PARTS):
-            own = np.sum(W[:, a, b] ** 2)
-            crossed = np.einsum("vik,vij,vjl->kl", WH[:, a], W[:, a, b], WH[:, b])
-            shared = np.einsum("kl,lk->", C, crossed)
-            information[j, k] = 0.5 * (own - 2 * shared + np.trace(C @ folded[j] @ C @ folded[k]))
+            own, shared = np.sum(W[:, a, b] ** 2), np.sum(W[:, a, b] * G[:, a, b])
+            information[j, k] = 0.5 * (own - 2 * shared + np.sum(folded[j] * folded[k].T))
     return information
+
+
+def _told_twice(solved: Weighed) -> Float[Array, "views 6 6"]:
+    """``W H C H^T W`` of each view: the information that went into the unknowns."""
+    return solved.weighed_design @ solved.covariance @ np.swapaxes(solved.weighed_design, 1, 2)

@@ -67,6 +67,7 @@ def hand_eye_covariance(
     order = np.array(carried + fixed if setup.carries_camera else fixed + carried)
     C, WH = solved.covariance, solved.weighed_design
     variances = estimate.noise.variances
+    C_small = C + _for_few_views(solved, estimate)
 
     def cut(matrix: Array) -> Float[Array, "12 12"]:
         return matrix[np.ix_(order, order)]
@@ -86,4 +87,21 @@ def hand_eye_covariance(
     spread = np.einsum("ik,kl,il->i", slope, np.linalg.pinv(estimate.information), slope)
     own = np.diag(cut(C))
     freedom = np.clip(2 * own**2 / np.maximum(spread, 1e-300), 1.0, 1e6)
-    return HandEyeCovariance(cut(C), freedom, parts)
+    return HandEyeCovariance(cut(C_small), freedom, parts)
+
+
+def _for_few_views(solved: Weighed, estimate: NoiseEstimate) -> Float[Array, "s s"]:
+    """What the arm's noise being estimated adds (Kenward & Roger 1997, for variances that enter linearly).
+
+    Weights drawn from the data themselves make the unknowns err a little more than right weights would.
+    """
+    C, W, WH = solved.covariance, solved.weight, solved.weighed_design
+    spread = np.linalg.pinv(estimate.information)
+    parts = (slice(0, 3), slice(3, 6))
+    P = [-np.einsum("vik,vil->kl", WH[:, part], WH[:, part]) for part in parts]
+    total = np.zeros_like(C)
+    for i, a in enumerate(parts):
+        for j, b in enumerate(parts):
+            Q = np.einsum("vik,vij,vjl->kl", WH[:, a], W[:, a, b], WH[:, b])
+            total += spread[i, j] * (Q - P[i] @ C @ P[j])
+    return 2 * C @ ((total + total.T) / 2) @ C

@@ -47,7 +47,7 @@ class Motion:
     largest: float
     """Largest angle between two poses [rad]."""
     distinct: int
-    """How many of the poses differ from each other."""
+    """How many of the poses differ from each other, counted as far as it takes."""
 
     @property
     def axis(self) -> Float[Array, "3"]:
@@ -70,6 +70,8 @@ def _distinct(poses: SE3) -> int:
     """How many poses are left when near copies count once."""
     kept: list[int] = []
     for i in range(len(poses)):
+        if len(kept) == FEWEST_POSES:
+            break
         to = poses[i].inverse() @ poses[np.array(kept, dtype=int)] if kept else None
         if (
             to is None

@@ -39,7 +39,8 @@ def joined(
 
     shared = np.zeros((s, s))
     shared[:p, :p] = corners.shared + known
-    shared[p:, p:] = np.einsum("vik,vil->kl", J_s, J_s)
+    rows_s = J_s.reshape(-1, s - p)
+    shared[p:, p:] = rows_s.T @ rows_s
     shared[s - len(own) :, s - len(own) :] += np.eye(len(own))
     border = np.zeros((views, s, 6))
     border[:, :p] = corners.border

@@ -12,7 +12,7 @@ from vision_robot.calibrate.hand_eye.closed_forms import shah
 from vision_robot.calibrate.hand_eye.conventions import BETTER, CONTRADICTION
 from vision_robot.calibrate.hand_eye.start import Fit, closed_fit, disagreement
 from vision_robot.errors import ContradictingPoses
-from vision_robot.geometry import SE3
+from vision_robot.geometry import SE3, rotation_log
 from vision_robot.types import Array, Float, Int
 
 __all__ = ["between", "check_pairing", "lagged", "matched_order", "other_pose"]
@@ -175,9 +175,7 @@ def _grown(
             break
         X, Z = shah.solve(mount_from_far[order[held]], cam_from_board[held])
         said = X.inverse() @ mount_from_far @ Z
-        turn = SE3(
-            said.rotation[None] @ np.swapaxes(cam_from_board.rotation, 1, 2)[:, None], np.zeros(3)
-        ).rotvec()
+        turn = rotation_log(said.rotation[None] @ np.swapaxes(cam_from_board.rotation, 1, 2)[:, None])
         shift = said.translation[None] - cam_from_board.translation[:, None]
         size = np.hypot(np.linalg.norm(turn, axis=-1), np.linalg.norm(shift, axis=-1) / reach)
         rows, columns = linear_sum_assignment(np.minimum(size, tolerance))

@@ -52,7 +52,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class PoseTable:
-    """One row a pose: `shift` (n, 3) and `turn` (n, 3, 4 or 9) as in the file, or joint values.
+    """One row a pose: `shift` (n, 3) and `turn` (n, 3, 4 or 9) as in the file; none for joint values only.
 
     `names` are pictures, where the file names them; `rows` says where in the file each pose stands.
     """
@@ -63,7 +63,7 @@ class PoseTable:
     turn: Float[Array, "n k"]
     names: tuple[str, ...] | None
     rows: tuple[str, ...]
-    joints: Float[Array, "n j"] | None = None
+    joints: Float[Array, "rows j"] | None = None
     joint_names: tuple[str, ...] = ()
 
     def __len__(self) -> int:

@@ -38,7 +38,8 @@ class Reduced:
         V = self.by_pictures + np.diag(np.repeat(noise.variances, 3))
         W = np.linalg.inv(V)
         WH = W @ self.design
-        normal = np.einsum("vik,vil->kl", self.design, WH) + self.prior
+        rows, s = 6 * len(V), self.design.shape[2]
+        normal = self.design.reshape(rows, s).T @ WH.reshape(rows, s) + self.prior
         scale = 1 / np.sqrt(np.maximum(np.diag(normal), 1e-300))
         inverse = np.linalg.pinv(normal * scale[:, None] * scale, rcond=1e-15, hermitian=True)
         inverse = inverse * scale[:, None] * scale

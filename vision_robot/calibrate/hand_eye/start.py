@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vision_robot.calibrate.hand_eye.closed_forms import park_martin, shah
-from vision_robot.geometry import SE3
+from vision_robot.geometry import SE3, rotation_log
 from vision_robot.types import Array, Bool, Float
 
 __all__ = ["Fit", "closed_fit", "consistent_fit", "disagreement"]
@@ -77,7 +77,7 @@ def disagreement(
 ) -> tuple[Float[Array, "*n"], Float[Array, "*n"]]:
     """Turn [rad] and shift [m] between where the arm says the board is and where it was seen."""
     said = mount_from_cam.inverse() @ mount_from_far @ far_from_board
-    turn = SE3(said.rotation @ np.swapaxes(cam_from_board.rotation, -1, -2), said.translation).rotvec()
+    turn = rotation_log(said.rotation @ np.swapaxes(cam_from_board.rotation, -1, -2))
     shift = said.translation - cam_from_board.translation
     return np.linalg.norm(turn, axis=-1), np.linalg.norm(shift, axis=-1)
 

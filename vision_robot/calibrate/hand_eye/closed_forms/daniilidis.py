@@ -41,12 +41,16 @@ def _dual(motion: SE3) -> tuple[Float[Array, "m 3"], Float[Array, "m 3"]]:
 
 
 def _scale_ratio(a: float, b: float, c: float, u1: Array, u2: Array) -> float:
-    """The root of ``a s^2 + b s + c`` whose quaternion is the longer (eq. 33)."""
+    """The root of ``a s^2 + b s + c`` whose quaternion is the longer (eq. 33).
+
+    Longer for combinations of one size: where the first null vector has hardly a real part, the wrong
+    root is huge and stretches that little to any length.
+    """
     if abs(a) < 1e-15:
         return -c / b if abs(b) > 1e-15 else 0.0
     root = np.sqrt(max(b * b - 4 * a * c, 0.0))
     roots = [(-b + root) / (2 * a), (-b - root) / (2 * a)]
-    return max(roots, key=lambda s: s * s * (u1 @ u1) + 2 * s * (u1 @ u2) + u2 @ u2)
+    return max(roots, key=lambda s: (s * s * (u1 @ u1) + 2 * s * (u1 @ u2) + u2 @ u2) / (1 + s * s))
 
 
 def _rotation(q: Float[Array, "4"]) -> Float[Array, "3 3"]:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from vision_robot.calibrate.hand_eye.arm_noise import LEAST
 from vision_robot.calibrate.hand_eye.judgement.board_scale import BoardScale
 from vision_robot.calibrate.hand_eye.judgement.error_budget import HandEyeBudget
 from vision_robot.calibrate.hand_eye.judgement.held_out import HeldOutViews
@@ -22,6 +23,8 @@ def verdict(result: HandEyeResult, budget: HandEyeBudget) -> str:
     """Whether the arm or the camera makes the error, and what would help."""
     noise = result.noise.noise
     arm = f"{millimetres(noise.shift_m)} and {degrees(noise.turn)} per axis"
+    if noise.shift_m <= LEAST.shift_m * 1.01 and noise.turn <= LEAST.turn * 1.01:
+        arm = "too small to be told from these views"
     whole = millimetres(result.covariance.position_m)
     shares = (
         f"of {whole} of uncertainty in where the camera sits the arm's own error ({arm}) makes "
