@@ -106,7 +106,7 @@ def as_text(found: RigFound, given: RigInput, seed: int = 0) -> str:
         rms, bound = 1000 * found.held_out.rms_m, 1000 * found.held_out.foretold_m
         count = found.held_out.moments
         lines.append(
-            f"boards held out at {count} moments: {rms:.4f} mm rms when triangulated, foretold {bound:.4f} at most"
+            f"boards held out at {count} moments: triangulated to {rms:.4f} mm rms, foretold <= {bound:.4f}"
         )
     for r in fit.rejected:
         if r.corner is None:

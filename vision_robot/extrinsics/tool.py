@@ -1,9 +1,9 @@
 """Tool centre point from camera observations: where the tip is on the wrist, seen by fixed cameras.
 
-Hallenberg's problem ("Robot tool center point calibration using computer vision", 2007). At pose i the tip is at
-``base_from_wrist_i p`` and a camera sees it at ``project(cam_from_base base_from_wrist_i p)``. Sought is p, and
-with it cam_from_base of every camera whose place is not known beforehand. A tip held still at one point
-while the wrist turns about it (the pivot method) is the same problem without cameras: `pivot`.
+Hallenberg's problem ("Robot tool center point calibration using computer vision", 2007). At pose i the tip is
+at ``base_from_wrist_i p``, where a camera sees it at ``project(cam_from_base base_from_wrist_i p)``. Sought is
+p, and with it cam_from_base of every camera whose place is not known beforehand. A tip held still at one
+point while the wrist turns about it (the pivot method) is the same problem without cameras: `pivot`.
 """
 
 from collections.abc import Sequence
@@ -14,9 +14,10 @@ import numpy as np
 from vision_robot.errors import BadParameter, NoConvergence
 from vision_robot.extrinsics.board_pose import moved_pose, pose_jacobian
 from vision_robot.extrinsics.descent import DenseEquations, dense_step, descend
+from vision_robot.extrinsics.tip_view import TipView
 from vision_robot.extrinsics.tool_checks import check_known, check_turns
 from vision_robot.extrinsics.tool_start import start
-from vision_robot.geometry import SE3, KnownCamera
+from vision_robot.geometry import SE3
 from vision_robot.types import Array, Bool, Float
 
 __all__ = ["TipView", "ToolFit", "fit_tool"]
@@ -25,22 +26,6 @@ CUTOFF = 5.5
 RAYLEIGH_MEDIAN = 1.1774
 NEVER_OUTLYING_PX = 0.1
 ROUNDS = 6
-
-
-@dataclass(frozen=True)
-class TipView:
-    """The tip as one fixed camera saw it: `pixels` (poses, 2), NaN where it did not.
-
-    `cam_from_base` is the camera's place where it is known (as from hand-eye calibration), with the
-    covariance (6, 6) of (w [rad], dt [m]); else it is estimated.
-    """
-
-    name: str
-    known: KnownCamera
-    pixels: Float[Array, "poses 2"]
-    sigma_px: float = 1.0
-    cam_from_base: SE3 | None = None
-    pose_covariance: Float[Array, "6 6"] | None = None
 
 
 @dataclass(frozen=True)
@@ -113,14 +98,14 @@ def fit_tool(base_from_wrist: SE3, views: Sequence[TipView], *, robust: bool = T
             raise BadParameter(f"sightings of camera {view.name}", int(one.sum()), f"at least {least}")
     if 2 * seen.sum() <= unknowns:
         raise BadParameter(
-            "sightings", int(seen.sum()), f"more than {unknowns / 2:.1f}, for {unknowns} unknowns"
+            "sightings", int(seen.sum()), f"more than {unknowns / 2:g} for {unknowns} unknowns"
         )
     check_turns(base_from_wrist[seen.any(axis=0)], placed=bool(placed.all()))
     tip, poses = start(base_from_wrist, views, seen)
     state = _State(tip, SE3(np.stack([p.rotation for p in poses]), np.stack([p.translation for p in poses])))
     rejected: list[tuple[str, int]] = []
+    state, matrix, cost = _settle(state, base_from_wrist, views, seen, placed)
     for _ in range(ROUNDS):
-        state, matrix, cost = _settle(state, base_from_wrist, views, seen, placed)
         residuals = _residuals(state, base_from_wrist, views, seen)
         sigma = np.array([view.sigma_px for view in views])[:, None]
         length = np.linalg.norm(residuals, axis=2)
@@ -134,6 +119,7 @@ def fit_tool(base_from_wrist: SE3, views: Sequence[TipView], *, robust: bool = T
         worst = np.unravel_index(int(np.nanargmax(np.where(far, length / sigma, -1))), far.shape)
         rejected.append((views[int(worst[0])].name, int(worst[1])))
         seen[worst] = False
+        state, matrix, cost = _settle(state, base_from_wrist, views, seen, placed)
     dof = max(2 * int(seen.sum()) - unknowns, 1)
     unit = 2 * cost / dof
     check_known(matrix[:3, :3], matrix, base_from_wrist)

@@ -19,7 +19,7 @@ UNKNOWN = 1e-10
 
 
 def check_turns(base_from_wrist: SE3, *, placed: bool) -> None:
-    """Raise TooLittleMotion where the wrist never turns, or about one axis only, and the camera's place is open.
+    """Raise TooLittleMotion where the wrist never turns, or about one axis only, before an unknown camera.
 
     With `placed` cameras each picture sees the tip where it is, and any motion will do.
     """
@@ -73,6 +73,7 @@ def check_known(information: Float[Array, "3 3"], matrix: Float[Array, "k k"], b
     if values[0] < UNKNOWN * np.trace(information):
         named = axis_in_words(vectors[:, 0])
         axis, spread, _ = turning_axis(base_from_wrist)
-        why = f"the poses turn it by {np.degrees(spread):.0f} degrees, mostly about the wrist's {axis_in_words(axis)}"
+        most = f"{np.degrees(spread):.0f} degrees, mostly about the wrist's {axis_in_words(axis)}"
+        why = f"the poses turn it by {most}"
         mend = "tilt the wrist in other directions too, or give the camera's place"
         raise TooLittleMotion(f"the tip along the wrist's {named}", why, mend)

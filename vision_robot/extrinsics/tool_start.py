@@ -1,17 +1,17 @@
 """Where the search for a tool's tip starts: linear equations in rays, then the nearest rotation.
 
-For a ray b seen at pose i, ``b x (R_c (R_i p + t_i) + t_c) = 0``. With R_c and t_c unknown the products R_c R_i p
-spoil linearity, so p is found by a scan: for each candidate the rest is a camera's pose from points known
-in the base, which is solved directly.
+For a ray b seen at pose i, ``b x (R_c (R_i p + t_i) + t_c) = 0``. With R_c and t_c unknown the products
+R_c R_i p spoil linearity, so p is found by a scan: for each candidate the rest is a camera's pose from
+points known in the base, which is solved directly.
 """
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 
 from vision_robot.errors import NoConvergence
-from vision_robot.geometry import SE3, Camera, KnownCamera
+from vision_robot.extrinsics.tip_view import TipView
+from vision_robot.geometry import SE3, Camera
 from vision_robot.types import Array, Bool, Float
 
 __all__ = ["pose_from_points", "start"]
@@ -20,16 +20,8 @@ LONGEST_M = 0.6
 """A tool longer than this is started from its own length anyway: the descent goes on from there."""
 
 
-class Sighting(Protocol):
-    """What the start needs of a `TipView`."""
-
-    known: KnownCamera
-    pixels: Float[Array, "poses 2"]
-    cam_from_base: SE3 | None
-
-
 def start(
-    base_from_wrist: SE3, views: Sequence[Sighting], seen: Bool[Array, "c p"]
+    base_from_wrist: SE3, views: Sequence[TipView], seen: Bool[Array, "c p"]
 ) -> tuple[Float[Array, "3"], list[SE3]]:
     """A tip and the cameras' places good enough to descend from; raises NoConvergence where there is none."""
     known = [view.cam_from_base for view in views]
@@ -41,11 +33,9 @@ def start(
         points = base_from_wrist.apply(tip[None])[:, 0]
         poses, total = [], 0.0
         for view, one, pose in zip(views, seen, known, strict=True):
-            place = (
-                pose
-                if pose is not None
-                else pose_from_points(view.known.camera, points[one], view.pixels[one])
-            )
+            place = pose
+            if place is None:
+                place = pose_from_points(view.known.camera, points[one], view.pixels[one])
             if place is None:
                 total = np.inf
                 break
@@ -65,7 +55,7 @@ def _candidates() -> Array:
     return np.concatenate([np.zeros((1, 3)), (lengths[:, None, None] * directions).reshape(-1, 3)])
 
 
-def _error(view: Sighting, pose: SE3, points: Array, pixels: Array) -> float:
+def _error(view: TipView, pose: SE3, points: Array, pixels: Array) -> float:
     """Angle between rays seen and foretold, which is a number whatever the pose."""
     rays = view.known.camera.unproject(pixels)
     aim = pose.apply(points)
@@ -74,7 +64,7 @@ def _error(view: Sighting, pose: SE3, points: Array, pixels: Array) -> float:
 
 
 def _linear_tip(
-    base_from_wrist: SE3, views: Sequence[Sighting], poses: list[SE3], seen: Bool[Array, "c p"]
+    base_from_wrist: SE3, views: Sequence[TipView], poses: list[SE3], seen: Bool[Array, "c p"]
 ) -> Float[Array, "3"]:
     """The point nearest to all rays, in the wrist's frame."""
     normal, rhs = np.zeros((3, 3)), np.zeros(3)
