@@ -11,25 +11,32 @@ from typing import Any
 
 __all__ = [
     "AmbiguousPlane",
+    "BadArm",
     "BadCameraFile",
     "BadCornerFile",
     "BadInput",
     "BadParameter",
+    "BadPoseFile",
     "BadTable",
     "BadVideo",
     "BoardNotFound",
+    "ContradictingPoses",
+    "DegeneratePoses",
     "DegenerateViews",
     "EdgeOnPlane",
+    "MissingLimits",
     "MissingOpenGL",
     "MixedImageSizes",
     "NoConvergence",
     "NoImages",
+    "TooFewPoses",
     "TooFewViews",
     "TooLittleMotion",
     "OffPlane",
     "UnlinkedCameras",
     "Unsynchronised",
     "UnlevelBoard",
+    "UnknownStructure",
     "UnreadableImage",
     "UnwritableOutput",
     "VisionRobotError",
@@ -245,12 +252,79 @@ class BadTable(BadInput):
         super().__init__(f"{path} cannot be used as a table: {why}")
 
 
+class BadPoseFile(BadInput):
+    """A file of robot poses cannot be used."""
+
+    def __init__(self, path: object, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"{path} cannot be used as robot poses: {why}")
+
+
+class TooFewPoses(BadInput):
+    """Fewer usable pairs of pose and picture than a hand-eye calibration needs."""
+
+    def __init__(self, usable: int, needed: int, given: int, why: str = ""):
+        self.usable, self.needed, self.given, self.why = usable, needed, given, why
+        super().__init__(
+            f"{usable} usable pair(s) of pose and picture of {given} given{f' ({why})' if why else ''}: "
+            f"at least {needed} are needed, ten to twenty are good; turn the wrist by 30-90 degrees about "
+            "different axes"
+        )
+
+
+class DegeneratePoses(BadInput):
+    """The arm's poses leave a part of the hand-eye transform undetermined."""
+
+    def __init__(self, undetermined: Sequence[str], why: str, mend: str):
+        self.undetermined, self.why, self.mend = tuple(undetermined), why, mend
+        super().__init__(f"{'; '.join(undetermined)} cannot be known from these poses ({why}): {mend}")
+
+
+class ContradictingPoses(BadInput):
+    """The arm's poses and the pictures do not belong together as they are given."""
+
+    def __init__(self, why: str, mend: str, order: Sequence[int] | None = None):
+        self.why, self.mend = why, mend
+        self.order = None if order is None else tuple(order)
+        """For shuffled pairs: the pose that each picture fits, -1 for none."""
+        super().__init__(f"the arm's poses and the pictures contradict each other: {why}; {mend}")
+
+
 class BadVideo(BadInput):
     """A video cannot be read or written."""
 
     def __init__(self, path: object, why: str):
         self.path, self.why = str(path), why
         super().__init__(f"{path} cannot be used as a video: {why}")
+
+
+class BadArm(BadInput):
+    """A file describes no arm that can be solved."""
+
+    def __init__(self, path: object, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"{path} is not an arm this tool can use: {why}")
+
+
+class MissingLimits(BadArm):
+    """Joints that slide have no limits."""
+
+    def __init__(self, path: object, joints: Sequence[str]):
+        self.joints = tuple(joints)
+        why = f"joint(s) {', '.join(joints)} slide without limits"
+        super().__init__(path, f"{why}: write them into the file or give --limit {joints[0]}=0..0.4m")
+
+
+class UnknownStructure(BadInput):
+    """An arm is of no kind whose joints are known in closed form."""
+
+    def __init__(self, joints: Sequence[str], pattern: str, reasons: dict[str, str]):
+        self.joints, self.pattern, self.reasons = tuple(joints), pattern, reasons
+        why = "; ".join(f"not {name}: {reason}" for name, reason in reasons.items())
+        super().__init__(
+            f"no closed form is known for joints {', '.join(joints)} ({pattern}): "
+            f"{why or 'no kind that is known has this order of joints'}; use the numeric solver"
+        )
 
 
 class UnwritableOutput(BadInput):

@@ -3,6 +3,7 @@
 from vision_robot.geometry.camera import Camera, pixel_grid
 from vision_robot.geometry.camera_rig import CameraRig
 from vision_robot.geometry.chain import SerialChain
+from vision_robot.geometry.hand_eye import HandEye
 from vision_robot.geometry.known_camera import KnownCamera
 from vision_robot.geometry.lens import LENSES, Lens, lens_named
 from vision_robot.geometry.plane import pixels_from_plane, plane_from_pixels, plane_homography
@@ -16,6 +17,7 @@ __all__ = [
     "SE3",
     "Camera",
     "CameraRig",
+    "HandEye",
     "KnownCamera",
     "Lens",
     "SerialChain",
