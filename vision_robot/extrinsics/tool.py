@@ -1,7 +1,7 @@
 """Tool centre point from camera observations: where the tip is on the wrist, seen by fixed cameras.
 
 Hallenberg's problem ("Robot tool center point calibration using computer vision", 2007). At pose i the tip is
-at ``base_from_wrist_i p``, where a camera sees it at ``project(cam_from_base base_from_wrist_i p)``. Sought is
+at ``base_from_wrist_i p``, seen by a camera at ``project(cam_from_base base_from_wrist_i p)``. Sought is
 p, and with it cam_from_base of every camera whose place is not known beforehand. A tip held still at one
 point while the wrist turns about it (the pivot method) is the same problem without cameras: `pivot`.
 """
