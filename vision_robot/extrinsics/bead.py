@@ -106,7 +106,7 @@ def _robust_circle(edge: Float[Array, "n 2"]) -> tuple[Float[Array, "2"], float,
     """Centre, radius, scatter of the outline [px] and how many points carry it."""
     weight = np.ones(len(edge))
     centre, radius, off = edge.mean(axis=0), 0.0, np.zeros(len(edge))
-    for _ in range(15):
+    for k in range(ROUNDS):
         offset = edge - centre
         distance = np.linalg.norm(offset, axis=1)
         A = np.concatenate([-offset / distance[:, None], -np.ones((len(edge), 1))], axis=1)
@@ -118,6 +118,11 @@ def _robust_circle(edge: Float[Array, "n 2"]) -> tuple[Float[Array, "2"], float,
         spread = max(float(np.median(np.abs(off))) / 0.6745, 0.02)
         weight = 1 / np.sqrt(1 + (off / (2.4 * spread)) ** 2)
         weight[np.abs(off) > 5 * spread] = 1e-6
+        if k >= ROUNDS - 5:
+            # What lies beside a hidden part of the outline is half hidden itself.
+            hidden = np.abs(off) > 3.5 * spread
+            for shift in (-3, -2, -1, 1, 2, 3):
+                weight[np.roll(hidden, shift)] = 1e-6
     used = float(np.sum(weight > 0.3))
     if used < len(edge) / 3:
         return None
@@ -125,5 +130,6 @@ def _robust_circle(edge: Float[Array, "n 2"]) -> tuple[Float[Array, "2"], float,
 
 
 RAYS = 96
+ROUNDS = 18
 STEP = 0.25
 LEAST_SIGMA_PX = 0.01

@@ -28,6 +28,8 @@ def ellipses(
     area = np.ptp(positions_mm, axis=0)
     spacing = float(np.sqrt(max(area[0], 1e-9) * max(area[1], 1e-9) / max(len(positions_mm), 1)))
     magnified = _round(0.45 * max(spacing, 1e-9) / max(float(np.median(lengths[:, 1])), 1e-12))
+    if len(positions_mm) == 1:
+        magnified = 1.0  # alone it has the whole drawing
     turn = np.linspace(0, 2 * np.pi, 41)
     circle = np.stack([np.cos(turn), np.sin(turn)])
 
@@ -49,7 +51,9 @@ def ellipses(
     return Figure(
         draw(paint, height_in=0.8 * WIDTH_IN),
         alt="Covariance ellipses, magnified",
-        caption=f"{caption} Ellipses are two sigma, magnified {magnified:g} times.{also}",
+        caption=f"{caption} Ellipses are two sigma, magnified {magnified:g} times.{also}"
+        if magnified != 1
+        else f"{caption} The ellipse is two sigma.",
     )
 
 

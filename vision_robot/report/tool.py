@@ -178,10 +178,11 @@ def _covariance(fit: ToolFit | PivotFit, truth: Float[Array, "3"] | None) -> lis
         error = None if truth is None else 1000 * (truth - fit.tip)[list(pair)][None]
         figures.append(
             ellipses(
-                1000 * fit.tip[list(pair)][None],
+                np.zeros((1, 2)),
                 1e6 * fit.covariance[plan][None],
-                ("xyz"[pair[0]], "xyz"[pair[1]]),
-                caption=f"The tip in the wrist's {'xyz'[pair[0]]}{'xyz'[pair[1]]} plane.",
+                (f"off in {'xyz'[pair[0]]}", f"off in {'xyz'[pair[1]]}"),
+                caption=f"The tip in the wrist's {'xyz'[pair[0]]}{'xyz'[pair[1]]} plane, off the value found"
+                + (", with a line to the truth." if truth is not None else "."),
                 errors_mm=error,
             )
         )
