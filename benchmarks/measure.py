@@ -3,8 +3,8 @@
 Each run draws a camera, calibrates it from noisy corners of boards held before it, finds the work plane from
 one noisy view of the board lying on a table (with `--places` more where it was moved), and measures points of
 the table, anywhere in the picture, from noisy pixels. `ratio` is the rms of error / sigma over all points and
-both axes: 1 where sigma is honest; the target is 0.9 to 1.1. Beside it what the same numbers would say had the
-camera been taken as exact, or camera and pose as independent of each other.
+both axes: 1 where sigma is honest; the target is 0.9 to 1.1. Beside it what the same numbers would say had
+the camera been taken as exact, or camera and pose as independent of each other.
 """
 
 import argparse

@@ -27,7 +27,7 @@ def ellipses(
     lengths = 2 * np.sqrt(np.maximum(values, 0))
     area = np.ptp(positions_mm, axis=0)
     spacing = float(np.sqrt(max(area[0], 1e-9) * max(area[1], 1e-9) / max(len(positions_mm), 1)))
-    magnified = _round(0.45 * max(spacing, 1e-9) / max(float(np.median(lengths[:, 1])), 1e-12))
+    magnified = _round(0.45 * max(spacing, 1e-9) / max(float(np.quantile(lengths[:, 1], 0.9)), 1e-12))
     if len(positions_mm) == 1:
         magnified = 1.0  # alone it has the whole drawing
     turn = np.linspace(0, 2 * np.pi, 41)

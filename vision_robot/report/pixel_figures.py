@@ -56,8 +56,11 @@ def scatter_rings(
     every = max(1, -(-len(values) // MOST_MARKS))
 
     def paint(canvas: "Canvas") -> None:
+        from matplotlib.ticker import MaxNLocator
+
         axes = canvas.add_subplot()
         axes.set_aspect("equal")
+        axes.xaxis.set_major_locator(MaxNLocator(nbins=5))
         axes.axhline(0, color=FAINT, linewidth=0.6, zorder=0)
         axes.axvline(0, color=FAINT, linewidth=0.6, zorder=0)
         segments(axes, values[::every], colour=ACCENT, width=2.0)
