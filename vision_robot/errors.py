@@ -12,6 +12,8 @@ from typing import Any
 __all__ = [
     "BadArm",
     "AmbiguousPlane",
+    "AmbiguousPlane",
+    "BadArm",
     "BadCameraFile",
     "BadCornerFile",
     "BadFrame",
@@ -34,6 +36,8 @@ __all__ = [
     "LinkMismatch",
     "MissingLimits",
     "EdgeOnPlane",
+    "EdgeOnPlane",
+    "MissingLimits",
     "MissingOpenGL",
     "MissingPackage",
     "MixedImageSizes",
@@ -47,9 +51,13 @@ __all__ = [
     "TooFewPoses",
     "TooFewViews",
     "UnknownStructure",
+    "TooLittleMotion",
     "OffPlane",
+    "UnlinkedCameras",
+    "Unsynchronised",
     "UnlevelBoard",
     "Unreachable",
+    "UnknownStructure",
     "UnreadableImage",
     "UnwritableOutput",
     "VisionRobotError",
@@ -259,6 +267,38 @@ class UnlevelBoard(BadInput):
             f"the board in {image} does not lie on the plane of the first photo ({height_mm:+.1f} mm off it, "
             f"tilted by {tilt_deg:.1f} degrees): lay it flat on the table, and keep the camera still"
         )
+
+
+class UnlinkedCameras(BadInput):
+    """Cameras of a rig that never saw the board at the same moment as the others."""
+
+    def __init__(self, linked: Sequence[str], unlinked: Sequence[str]):
+        self.linked, self.unlinked = tuple(linked), tuple(unlinked)
+        super().__init__(
+            f"{', '.join(unlinked)} never saw the board at the same moment as {', '.join(linked)}: take "
+            "pictures with the board where two cameras see it, and give them one file name in both folders"
+        )
+
+
+class Unsynchronised(BadInput):
+    """Two cameras of a rig do not show the board at the same places at the same moments."""
+
+    def __init__(self, first: str, second: str, agreeing: int, moments: int, lag: int | None):
+        self.first, self.second, self.agreeing, self.moments, self.lag = first, second, agreeing, moments, lag
+        mend = "were the pictures taken at the same moment, by cameras fixed to each other, of one board?"
+        if lag:
+            mend = f"they agree when picture k of {first} goes with k{lag:+d} of {second}: rename the files"
+        super().__init__(
+            f"{first} and {second} put the board at the same place at {agreeing} of {moments} moments: {mend}"
+        )
+
+
+class TooLittleMotion(BadInput):
+    """The robot's poses leave a direction unknown."""
+
+    def __init__(self, unknown: str, why: str, mend: str):
+        self.unknown, self.why = unknown, why
+        super().__init__(f"{unknown} cannot be known from these poses ({why}): {mend}")
 
 
 class OffPlane(BadInput):

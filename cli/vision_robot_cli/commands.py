@@ -35,6 +35,14 @@ EXTRINSICS: dict[str, Command] = {
         "vision_robot_cli.plane:plane",
         "Where the table is before the camera, from photos of a board lying on it, or marked points.",
     ),
+    "rig": Command(
+        "vision_robot_cli.rig:rig",
+        "Where several cameras are to each other, from a board that two of them see at a time.",
+    ),
+    "tool": Command(
+        "vision_robot_cli.tool:tool",
+        "Where the tool's tip is on the wrist, from pictures by fixed cameras or from one point touched.",
+    ),
 }
 
 COMMANDS: dict[str, Command | Group] = {

@@ -11,6 +11,7 @@ ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize("name", ["coverage", "hand_eye", "next_view", "refinement"])
+@pytest.mark.parametrize("name", ["coverage", "measure", "next_view", "refinement", "triangulation"])
 def test_it_runs(name):
     script = ROOT / "benchmarks" / f"{name}.py"
     done = subprocess.run(

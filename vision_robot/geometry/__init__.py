@@ -18,6 +18,8 @@ __all__ = [
     "Camera",
     "HandEye",
     "CameraRig",
+    "CameraRig",
+    "HandEye",
     "KnownCamera",
     "Lens",
     "SerialChain",

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
     from mpl_toolkits.mplot3d import Axes3D
 
-__all__ = ["cell_in_space"]
+__all__ = ["AXES", "cell_in_space", "framed", "pyramid"]
 
 MOST_VIEWS = 60
 AXES = (("x", WARM), ("y", "#1c6b43"), ("z", ACCENT))
@@ -45,7 +45,7 @@ def cell_in_space(result: HandEyeResult, outline: Float[Array, "k 3"] | None = N
             Poly3DCollection(faces, facecolors="#1f5fa80f", edgecolors=colour, linewidths=0.8)
         )
         pyramids = [
-            _pyramid(result.camera, _millimetres(cameras[i]), 0.7 * length) for i in range(len(cameras))
+            pyramid(result.camera, _millimetres(cameras[i]), 0.7 * length) for i in range(len(cameras))
         ]
         lines = np.concatenate(pyramids)
         axes.add_collection3d(Line3DCollection(lines, colors=FAINT if in_hand else INK, linewidths=0.7))
@@ -57,7 +57,7 @@ def cell_in_space(result: HandEyeResult, outline: Float[Array, "k 3"] | None = N
             axes.add_collection3d(Line3DCollection(base, colors=shade, linewidths=2.0))
         axes.text(0, 0, -0.25 * length, "{B}", fontsize=8, ha="center")
         points = [*faces, lines.reshape(-1, 3), 1000 * wrists.translation, np.zeros((1, 3))]
-        _frame(axes, np.concatenate(points))
+        framed(axes, np.concatenate(points))
 
     thinned = f" One view in {every} is drawn." if every > 1 else ""
     what = (
@@ -92,7 +92,7 @@ def _axis(poses: SE3, k: int, length: float) -> Float[Array, "n 2 3"]:
     return np.stack([start, start + length * poses.rotation[..., k]], axis=1)
 
 
-def _pyramid(camera: Camera, pose: SE3, depth: float) -> Float[Array, "8 2 3"]:
+def pyramid(camera: Camera, pose: SE3, depth: float) -> Float[Array, "8 2 3"]:
     """Edges of a camera's pyramid of view."""
     x, y = 0.5 * camera.width / camera.fx, 0.5 * camera.height / camera.fy
     x, y = min(x, 1.0), min(y, 1.0)  # a very wide lens is drawn as a wide one
@@ -101,7 +101,8 @@ def _pyramid(camera: Camera, pose: SE3, depth: float) -> Float[Array, "8 2 3"]:
     return np.concatenate([sides, np.stack([tips, np.roll(tips, -1, axis=0)], axis=1)])
 
 
-def _frame(axes: Any, points: Float[Array, "n 3"]) -> None:
+def framed(axes: Any, points: Float[Array, "n 3"]) -> None:
+    """Equal scales, labels and light walls around all points [mm]."""
     from matplotlib.ticker import MaxNLocator
 
     low, high = points.min(axis=0), points.max(axis=0)
