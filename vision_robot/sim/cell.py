@@ -55,6 +55,7 @@ class Cell:
             for item in design.items
             if item.path is not None
         ]
+        self._lights = self._lights_now()
         self._drive = Drive.of(mj, self.model, ARM)
         labelled = design.arm is not None and design.arm.label is not None
         names = [item.name for item in design.items if item.tracked]
@@ -297,6 +298,15 @@ class Cell:
             model.light_pos[sun] = self.base_from_station.translation + 1.6 * towards
             model.light_dir[sun] = -towards
         self._mujoco.mj_camlight(model, self.data)
+
+    @property
+    def light_is_as_designed(self) -> bool:
+        """Whether the lights are those of the design."""
+        return bool((self._lights == self._lights_now()).all())
+
+    def _lights_now(self) -> Array:
+        m = self.model
+        return np.stack([m.light_diffuse, m.light_ambient, m.light_specular, m.light_dir, m.light_pos])
 
     def _put_free(self, item: Item, station_from_item: SE3) -> None:
         pose = self.base_from_station @ station_from_item
