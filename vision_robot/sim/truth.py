@@ -10,7 +10,7 @@ from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.canvas import Region
 from vision_robot.sim.cell import Cell
 from vision_robot.sim.cell_design import StationCamera
-from vision_robot.sim.cell_model import BACKGROUND, MOVING
+from vision_robot.sim.cell_names import BACKGROUND, MOVING
 from vision_robot.sim.object_truth import FINER, ObjectTruth, object_truth
 from vision_robot.sim.redraw import MovingRegion
 from vision_robot.sim.render import Renderer, straight
