@@ -8,6 +8,9 @@ import numpy as np
 from jaxtyping import Bool, Float, Int, UInt8, UInt16
 
 __all__ = ["Array", "Bool", "Float", "Image", "Int", "UInt8", "UInt16"]
+from jaxtyping import Bool, Float, Int, Integer, UInt8
+
+__all__ = ["Array", "Bool", "Float", "Image", "Int", "Integer", "UInt8"]
 
 Array = np.ndarray
 

@@ -7,7 +7,7 @@ import numpy as np
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.gl import load_mujoco
-from vision_robot.types import Array, Float, Image, Int
+from vision_robot.types import Array, Float, Image, Int, Integer
 
 __all__ = ["Canvas", "Region"]
 
@@ -55,29 +55,31 @@ class Canvas:
         region: Region | None = None,
     ) -> Image:
         """Red-green-blue picture, or the `region` of it, its lowest row first as OpenGL has it."""
-        left, top, columns, rows = region or (0, 0, face.width, face.height)
-        name = "colours" if region is None else "region"
-        # The whole picture's view port, shifted: what lies outside the small buffer is not drawn.
-        view = self._mujoco.MjrRect(-left, -(face.height - top - rows), face.width, face.height)
-        self._draw(name, face, world_from_cam, hidden_groups, view, (columns, rows))
-        rgb = np.empty((rows, columns, 3), dtype=np.uint8)
-        rect = self._mujoco.MjrRect(0, 0, columns, rows)
+        name = "colours" if region is None else "colours of a region"
+        rect = self._draw(name, face, world_from_cam, hidden_groups, region)
+        rgb = np.empty((rect.height, rect.width, 3), dtype=np.uint8)
         self._mujoco.mjr_readPixels(rgb, None, rect, self._buffers[name])
         return rgb
 
     def numbers(
-        self, face: Camera, world_from_cam: SE3, *, hidden_groups: tuple[int, ...] = (), depth: bool = False
-    ) -> tuple[Int[Array, "rows columns"], Float[Array, "rows columns"] | None]:
+        self,
+        face: Camera,
+        world_from_cam: SE3,
+        *,
+        hidden_groups: tuple[int, ...] = (),
+        depth: bool = False,
+        region: Region | None = None,
+    ) -> tuple[Integer[Array, "rows columns"], Float[Array, "rows columns"] | None]:
         """The scene's numbers at the pixels' centres and, if asked for, depth [m], upper row first.
 
         0 is nothing, `objects` tells about the others; depth is infinite where nothing is hit. Geoms
         of `hidden_groups` are left out.
         """
-        rect = self._mujoco.MjrRect(0, 0, face.width, face.height)
-        self._draw("numbers", face, world_from_cam, hidden_groups, rect, (face.width, face.height))
+        name = "numbers" if region is None else "numbers of a region"
+        rect = self._draw(name, face, world_from_cam, hidden_groups, region)
         rgb = np.empty((rect.height, rect.width, 3), dtype=np.uint8)
         raw = np.empty((rect.height, rect.width), dtype=np.float32) if depth else None
-        self._mujoco.mjr_readPixels(rgb, raw, rect, self._buffers["numbers"])
+        self._mujoco.mjr_readPixels(rgb, raw, rect, self._buffers[name])
         index = rgb[::-1, :, 0]
         if self._scene.ngeom > 254:
             parts = rgb[::-1].astype(np.int32)
@@ -110,8 +112,9 @@ class Canvas:
             mj, quality = self._mujoco, self._model.vis.quality
             before = int(quality.offsamples), int(quality.shadowsize)
             # What a buffer is like is read from the model when it is made.
-            quality.offsamples = 0 if name == "numbers" else self._multisamples
-            if not self._shadows or name == "numbers":
+            coded = name.startswith("numbers")
+            quality.offsamples = 0 if coded else self._multisamples
+            if coded or not self._shadows:
                 quality.shadowsize = 0
             buffer = mj.MjrContext(self._model, mj.mjtFontScale.mjFONTSCALE_100.value)
             quality.offsamples, quality.shadowsize = before
@@ -125,21 +128,21 @@ class Canvas:
         face: Camera,
         world_from_cam: SE3,
         hidden_groups: tuple[int, ...],
-        view: MjrRect,
-        size: tuple[int, int],
-    ) -> None:
-        """Draw what a view port shows of the picture into a buffer of at least `size`."""
+        region: Region | None,
+    ) -> MjrRect:
+        """Draw the picture, or a region of it, into the buffer of that name; answers where it lies there."""
         if self._gl is None:
             raise BadParameter("renderer", "closed", "open: use it inside its with block")
         mj, scene = self._mujoco, self._scene
+        left, top, columns, rows = region or (0, 0, face.width, face.height)
         self._gl.make_current()
         buffer = self._buffer(name)
-        if name == "region":
-            mj.mjr_resizeOffscreen(*size, buffer)  # what is larger would be drawn too
-        elif size[0] > buffer.offWidth or size[1] > buffer.offHeight:
-            mj.mjr_resizeOffscreen(max(size[0], buffer.offWidth), max(size[1], buffer.offHeight), buffer)
+        if region is not None:
+            mj.mjr_resizeOffscreen(columns, rows, buffer)  # what is larger would be drawn too
+        elif columns > buffer.offWidth or rows > buffer.offHeight:
+            mj.mjr_resizeOffscreen(max(columns, buffer.offWidth), max(rows, buffer.offHeight), buffer)
         mj.mjr_setBuffer(mj.mjtFramebuffer.mjFB_OFFSCREEN.value, buffer)
-        coded = name == "numbers"
+        coded = name.startswith("numbers")
         flags, flag = scene.flags, mj.mjtRndFlag
         flags[flag.mjRND_SEGMENT] = flags[flag.mjRND_IDCOLOR] = coded
         flags[flag.mjRND_SKYBOX] = not coded
@@ -154,7 +157,9 @@ class Canvas:
         for light in scene.lights[: scene.nlight]:
             if light.headlight:
                 light.pos, light.dir = world_from_cam.translation, world_from_cam.rotation[:, 2]
-        mj.mjr_render(view, scene, buffer)
+        # The whole picture's view port, shifted: what lies outside the buffer is not drawn.
+        mj.mjr_render(mj.MjrRect(-left, top + rows - face.height, face.width, face.height), scene, buffer)
+        return mj.MjrRect(0, 0, columns, rows)
 
     def _metres(self, raw: Float[Array, "rows columns"]) -> Float[Array, "rows columns"]:
         eye = self._scene.camera[0]

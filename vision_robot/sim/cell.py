@@ -7,23 +7,15 @@ import numpy as np
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3
 from vision_robot.sim.cell_design import CellDesign, Item
-from vision_robot.sim.cell_model import (
-    ARM,
-    BELT,
-    ITEM,
-    LABEL,
-    LABEL_THICKNESS_M,
-    SKY_SHARE,
-    build,
-    direction,
-    quaternion,
-    resting,
-)
+from vision_robot.sim.cell_model import build
+from vision_robot.sim.cell_names import ARM, BELT, ITEM, LABEL, LABEL_THICKNESS_M
 from vision_robot.sim.drive import Drive
 from vision_robot.sim.gl import load_mujoco
+from vision_robot.sim.placing import quaternion, resting
 from vision_robot.sim.scatter import scattered
 from vision_robot.sim.shapes import Shape, shape_named
 from vision_robot.sim.surfaces import BELT_PITCH_M
+from vision_robot.sim.surroundings import SKY_SHARE, direction
 from vision_robot.types import Array, Float
 
 __all__ = ["Cell"]
@@ -55,6 +47,7 @@ class Cell:
             for item in design.items
             if item.path is not None
         ]
+        self._lights = self._lights_now()
         self._drive = Drive.of(mj, self.model, ARM)
         labelled = design.arm is not None and design.arm.label is not None
         names = [item.name for item in design.items if item.tracked]
@@ -297,6 +290,15 @@ class Cell:
             model.light_pos[sun] = self.base_from_station.translation + 1.6 * towards
             model.light_dir[sun] = -towards
         self._mujoco.mj_camlight(model, self.data)
+
+    @property
+    def light_is_as_designed(self) -> bool:
+        """Whether the lights are those of the design."""
+        return bool((self._lights == self._lights_now()).all())
+
+    def _lights_now(self) -> Array:
+        m = self.model
+        return np.stack([m.light_diffuse, m.light_ambient, m.light_specular, m.light_dir, m.light_pos])
 
     def _put_free(self, item: Item, station_from_item: SE3) -> None:
         pose = self.base_from_station @ station_from_item

@@ -22,13 +22,14 @@ class Moments:
     first: Float[Array, "2"]
     second: Float[Array, "3"]
 
-    def without(self, u: Int[Array, "n"], v: Int[Array, "n"]) -> "Moments":
-        """What is left when whole pixels are taken away."""
-        n = float(len(u))
-        u, v = u.astype(float), v.astype(float)
-        # A pixel is a square of side 1: it adds 1/12 to each second moment about its centre.
-        gone = np.array([u @ u + n / 12, u @ v, v @ v + n / 12])
-        return Moments(self.area - n, self.first - (u.sum(), v.sum()), self.second - gone)
+    def without(self, u: Float[Array, "n"], v: Float[Array, "n"], side: float = 1.0) -> "Moments":
+        """What is left when squares of this side about (u, v) are taken away."""
+        # A square adds side^2/12 for each unit of its area to the second moments about its centre.
+        n, own, area = len(u), side * side / 12, side * side
+        gone = area * np.array([u @ u + n * own, u @ v, v @ v + n * own])
+        return Moments(
+            self.area - n * area, self.first - area * np.array([u.sum(), v.sum()]), self.second - gone
+        )
 
     @property
     def centroid(self) -> Float[Array, "2"]:

@@ -5,7 +5,7 @@ import numpy as np
 from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.canvas import Region
 from vision_robot.sim.cell import Cell
-from vision_robot.sim.cell_model import FLOOR_BELOW_M, MOVING
+from vision_robot.sim.cell_names import FLOOR_BELOW_M, MOVING
 from vision_robot.types import Array, Float
 
 __all__ = ["MovingRegion"]
@@ -29,12 +29,6 @@ class MovingRegion:
         self._geoms = np.flatnonzero(model.geom_group == MOVING)
         middle, half = model.geom_aabb[self._geoms, None, :3], model.geom_aabb[self._geoms, None, 3:]
         self._corners = middle + half * CORNERS
-        self._lights = self._lights_now()
-
-    @property
-    def light_is_as_designed(self) -> bool:
-        """Whether no light was changed since the cell was built."""
-        return all((was == now).all() for was, now in zip(self._lights, self._lights_now(), strict=True))
 
     def region(self, camera: Camera, base_from_cam: SE3) -> Region | None:
         """Of the present state; (0, 0, 0, 0) when nothing that moves is seen, None when it cannot be told."""
@@ -74,14 +68,3 @@ class MovingRegion:
         middle, half = np.array(cell.design.table.middle_m), np.array(cell.design.table.size_m) / 2
         past = (np.abs(on_table[..., :2] - middle) > half).any(axis=(1, 2))
         return np.concatenate([points, on_table, np.where(past[:, None, None], on_floor, on_table)], axis=1)
-
-    def _lights_now(self) -> list[Array]:
-        model = self._cell.model
-        values = (
-            model.light_diffuse,
-            model.light_ambient,
-            model.light_specular,
-            model.light_dir,
-            model.light_pos,
-        )
-        return [np.array(value) for value in values]

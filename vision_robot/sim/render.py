@@ -10,7 +10,7 @@ from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.canvas import Canvas, Region
 from vision_robot.sim.cover import PinholeCover
 from vision_robot.sim.gl import load_mujoco
-from vision_robot.types import Array, Float, Image, Int
+from vision_robot.types import Array, Float, Image, Int, Integer, UInt8
 
 __all__ = ["Renderer", "straight"]
 
@@ -90,13 +90,16 @@ class Renderer:
         *,
         hidden_groups: tuple[int, ...] = (),
         depth: bool = False,
-    ) -> tuple[Int[Array, "height width"], Float[Array, "height width"] | None]:
+        region: Region | None = None,
+    ) -> tuple[Integer[Array, "height width"], Float[Array, "height width"] | None]:
         """The body seen at each pixel centre, from 1 (0: none), and depth [m] if asked for, in one draw.
 
         Geoms of `hidden_groups` are left out, which saves their time. The numbers are of the smallest
-        unsigned type that holds them.
+        unsigned type that holds them. Of a pinhole camera's picture a `region` alone may be asked for.
         """
-        number, objects, metres = self._coded(camera, world_from_cam, hidden_groups, depth=depth)
+        number, objects, metres = self._coded(
+            camera, world_from_cam, hidden_groups, depth=depth, region=region
+        )
         geom = load_mujoco().mjtObj.mjOBJ_GEOM.value
         table = np.zeros(256 if number.dtype == np.uint8 else len(objects), dtype=np.int64)
         isgeom = objects[:, 1] == geom
@@ -122,13 +125,23 @@ class Renderer:
         return self._covers[camera]
 
     def _coded(
-        self, camera: Camera, world_from_cam: SE3, hidden_groups: tuple[int, ...], *, depth: bool
-    ) -> tuple[Int[Array, "height width"], Int[Array, "k 2"], Float[Array, "height width"] | None]:
+        self,
+        camera: Camera,
+        world_from_cam: SE3,
+        hidden_groups: tuple[int, ...] = (),
+        *,
+        depth: bool,
+        region: Region | None = None,
+    ) -> tuple[Integer[Array, "height width"], Int[Array, "k 2"], Float[Array, "height width"] | None]:
         """Number at each pixel centre, object and type behind each number, depth if asked for."""
         canvas = self._canvas
         if straight(camera):
-            number, metres = canvas.numbers(camera, world_from_cam, hidden_groups=hidden_groups, depth=depth)
+            number, metres = canvas.numbers(
+                camera, world_from_cam, hidden_groups=hidden_groups, depth=depth, region=region
+            )
             return number, canvas.objects(hidden_groups), metres
+        if region is not None:
+            raise BadParameter("region", region, "left out for a camera with a lens or skew")
         cover = self._cover(camera)
         drawn = [
             canvas.numbers(face, world_from_cam @ turn, hidden_groups=hidden_groups, depth=depth)
@@ -141,7 +154,7 @@ class Renderer:
         return number, canvas.objects(hidden_groups), metres
 
 
-def _upright(rgb: Image, *, grey: bool) -> Image:
+def _upright(rgb: UInt8[Array, "height width 3"], *, grey: bool) -> Image:
     # OpenGL's first row is the lowest.
     return cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY if grey else cv2.COLOR_RGB2BGR)[::-1]
 

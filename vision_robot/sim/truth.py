@@ -1,6 +1,7 @@
 """Pictures of a cell with the truth about them: who is where, what is seen of it, and how it moves."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -9,11 +10,11 @@ from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.canvas import Region
 from vision_robot.sim.cell import Cell
 from vision_robot.sim.cell_design import StationCamera
-from vision_robot.sim.cell_model import BACKGROUND, MOVING
-from vision_robot.sim.object_truth import ObjectTruth, object_truth
+from vision_robot.sim.cell_names import BACKGROUND, MOVING
+from vision_robot.sim.object_truth import FINER, ObjectTruth, object_truth
 from vision_robot.sim.redraw import MovingRegion
 from vision_robot.sim.render import Renderer, straight
-from vision_robot.types import Array, Float, Image, Int
+from vision_robot.types import Array, Float, Image, Integer
 
 __all__ = ["TruthFrame", "TruthRenderer"]
 
@@ -30,9 +31,9 @@ class TruthFrame:
     cam_from_station: SE3
     image: Image
     """Blue-green-red, as an ideal sensor would see it."""
-    bodies: Int[Array, "height width"]
+    bodies: Integer[Array, "height width"]
     """MuJoCo's body at each pixel centre, counted from 1; 0: nothing that was drawn."""
-    thing_of_body: Int[Array, "bodies+1"]
+    thing_of_body: Integer[Array, "numbers"]
     """Id of the tracked thing behind each number of `bodies`; 0: none."""
     cam_from_body: SE3
     """Pose of every body of the model, a batch; `true_flow` compares two of them."""
@@ -41,7 +42,7 @@ class TruthFrame:
     """Distance along the optical axis [m] at pixel centres; infinite where nothing is, NaN outside a lens."""
 
     @property
-    def ids(self) -> Int[Array, "height width"]:
+    def ids(self) -> Integer[Array, "height width"]:
         """Id of the tracked thing (its place in `Cell.tracked`, from 1) at each pixel centre, 0 for none."""
         return self.thing_of_body[self.bodies]
 
@@ -76,7 +77,7 @@ class TruthRenderer:
     def picture(self, cam_from_station: SE3 | None = None) -> Image:
         """Colours only: blue-green-red, as an ideal sensor would see it."""
         camera, base_from_cam = self.view.camera, self._base_from_cam(cam_from_station)
-        if self._can_redraw and cam_from_station is None and self._moving.light_is_as_designed:
+        if self._can_redraw and cam_from_station is None and self.cell.light_is_as_designed:
             region = self._moving.region(camera, base_from_cam)
             if region is not None and region[2] * region[3] < WORTH * camera.width * camera.height:
                 return self._redrawn(base_from_cam, region)
@@ -117,9 +118,29 @@ class TruthRenderer:
             bodies=bodies,
             thing_of_body=self._thing_of_body,
             cam_from_body=cam_from_body,
-            objects=object_truth(cell, camera, cam_from_body[cell.bodies], bodies, self._hides | fallen),
+            objects=object_truth(
+                cell,
+                camera,
+                cam_from_body[cell.bodies],
+                bodies,
+                self._hides | fallen,
+                self._finer(base_from_cam, hidden) if straight(camera) else None,
+            ),
             depth=depth,
         )
+
+    def _finer(
+        self, base_from_cam: SE3, hidden_groups: tuple[int, ...]
+    ) -> Callable[[Region], Integer[Array, "rows columns"]]:
+        """What draws a region of `bodies` with FINER times as many rows and columns."""
+        fine = _finer(self.view.camera)
+
+        def draw(region: Region) -> Integer[Array, "rows columns"]:
+            left, top, columns, rows = (FINER * value for value in region)
+            part = (left, top, columns, rows)
+            return self._renderer.bodies(fine, base_from_cam, hidden_groups=hidden_groups, region=part)[0]
+
+        return draw
 
     def close(self) -> None:
         """Free the OpenGL context."""
@@ -134,3 +155,17 @@ class TruthRenderer:
     def _base_from_cam(self, cam_from_station: SE3 | None) -> SE3:
         pose = self.view.cam_from_station if cam_from_station is None else cam_from_station
         return self.cell.base_from_station @ pose.inverse()
+
+
+def _finer(camera: Camera) -> Camera:
+    """The same camera with FINER x FINER pixels in the place of each."""
+    n = FINER
+    return replace(
+        camera,
+        width=n * camera.width,
+        height=n * camera.height,
+        fx=n * camera.fx,
+        fy=n * camera.fy,
+        cx=n * (camera.cx + 0.5) - 0.5,
+        cy=n * (camera.cy + 0.5) - 0.5,
+    )
