@@ -16,6 +16,7 @@ __all__ = [
     "BadGoal",
     "BadInput",
     "BadParameter",
+    "BadPath",
     "BadTable",
     "BadVideo",
     "BoardNotFound",
@@ -188,6 +189,14 @@ class BadGoal(BadInput):
     def __init__(self, row: int, why: str, where: str = "goal"):
         self.row, self.why, self.where = row, why, where
         super().__init__(f"{where} {row} cannot be used: {why}")
+
+
+class BadPath(BadInput):
+    """No branch of an arm follows a path to its end."""
+
+    def __init__(self, share: float, why: str):
+        self.share, self.why = share, why
+        super().__init__(f"the path can be followed for {100 * share:.0f} % of its way: {why}")
 
 
 class MissingLimits(BadArm):

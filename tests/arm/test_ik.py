@@ -156,7 +156,7 @@ def test_what_cannot_be_reached_is_not_called_reached():
     for ik in (InverseKinematics(arm), InverseKinematics(arm, method=Method.NUMERIC)):
         found = ik.solve(SE3(np.tile(down, (4, 1, 1)), places))
         assert found.converged.tolist() == [False, False, False, True]
-        assert found.position_error_m[0] == pytest.approx(0.25, abs=1e-3)
+        assert 0.19 < found.position_error_m[0] <= 0.25  # straight on it is 0.25 m; leaning over it is less
         assert arm.chain.within_limits(found.q).all()
 
 
