@@ -105,7 +105,7 @@ def _square_limits(first: Float[Array, "grid n"], velocity: Float[Array, "n"]) -
 def _bounds(
     first: Float[Array, "n"], second: Float[Array, "n"], acceleration: Float[Array, "n"]
 ) -> tuple[Array, Array, Array]:
-    """Acceleration along the path lies between ``slope x - room`` and ``slope x + room``, x the speed squared.
+    """Acceleration along the path lies in ``slope x - room`` to ``slope x + room``, x the speed squared.
 
     One pair for each joint that moves along the path here.
     """
