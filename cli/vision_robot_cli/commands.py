@@ -33,6 +33,17 @@ EXTRINSICS: dict[str, Command] = {
     ),
 }
 
+IK: dict[str, Command] = {
+    "solve": Command(
+        "vision_robot_cli.ik_solve:ik_solve",
+        "Joint values for poses of the tool, from a file or options; or why none reach them.",
+    ),
+    "check": Command(
+        "vision_robot_cli.ik_check:ik_check",
+        "An arm's model: its kind, whether its kinematics hold together, a map of where it reaches.",
+    ),
+}
+
 COMMANDS: dict[str, Command | Group] = {
     "board": Command(
         "vision_robot_cli.board:board",
@@ -53,6 +64,10 @@ COMMANDS: dict[str, Command | Group] = {
     "extrinsics": Group(
         EXTRINSICS,
         "Where the camera is: on an arm, over a table, beside other cameras.",
+    ),
+    "ik": Group(
+        IK,
+        "Inverse kinematics of an arm in an MJCF or URDF file: from poses to joints.",
     ),
 }
 
