@@ -33,6 +33,17 @@ EXTRINSICS: dict[str, Command] = {
     ),
 }
 
+IK: dict[str, Command] = {
+    "export": Command(
+        "vision_robot_cli.ik_export:ik_export",
+        "C for a microcontroller: forward and inverse kinematics, and the receiver of joint commands.",
+    ),
+    "stream": Command(
+        "vision_robot_cli.ik_stream:ik_stream",
+        "Play a table of joint values to a microcontroller over a serial line.",
+    ),
+}
+
 COMMANDS: dict[str, Command | Group] = {
     "board": Command(
         "vision_robot_cli.board:board",
@@ -53,6 +64,10 @@ COMMANDS: dict[str, Command | Group] = {
     "extrinsics": Group(
         EXTRINSICS,
         "Where the camera is: on an arm, over a table, beside other cameras.",
+    ),
+    "ik": Group(
+        IK,
+        "The arm: poses to joints, and C for its microcontroller.",
     ),
 }
 

@@ -13,6 +13,7 @@ from tests.arm.compiled import STRICT, CompiledArm, arm_of, column_arm, goals_in
 from vision_robot.arm import Task
 from vision_robot.arm.closed_form import closed_form_of
 from vision_robot.arm.export_c import export_c
+from vision_robot.arm.ik import InverseKinematics
 from vision_robot.arm.model import Arm
 from vision_robot.arm.symbolic import length_scale
 from vision_robot.errors import BadParameter, UnknownStructure
@@ -80,6 +81,30 @@ def test_a_thousand_goals_are_answered_as_in_python(compiled, method, precision,
         if method == "closed-form":
             assert off.argmin() == spread.argmin()
     assert firm > 0.8 * TARGETS
+
+
+@needs_gcc
+@BOTH
+@pytest.mark.parametrize("name", ["column", "ur5e"])
+def test_the_branch_is_the_one_that_python_takes(compiled, precision, name):
+    arm = compiled("closed-form", precision, name)
+    chain = arm.arm.chain
+    q, goals = goals_inside(arm.arm, 400, seed=12)
+    nows = np.roll(q, 1, axis=0)
+    reached, joints = arm.solve_many(goals, nows)
+    solver = InverseKinematics(arm.arm, compiled=False)
+    python = solver.solve(chain.base_from_tool(q), near=nows)
+    assert reached.all()
+    assert python.converged.all()
+    metres, radians = WITHIN[precision]
+    off = np.abs(joints - python.q).max(axis=1)
+    loosest = np.array([np.linalg.svd(chain.jacobian(one), compute_uv=False)[-1] for one in joints])
+    same = off < max(metres, radians) / loosest
+    weights = np.where(chain.slides, 1 / length_scale(chain) ** 2, 1.0)
+    ours, theirs = (np.sqrt((one - nows) ** 2 @ weights) for one in (joints, python.q))
+    # Where they differ ours is not the farther one; of joints with more than a turn it may be the nearer.
+    assert (ours - theirs)[~same].max(initial=0) < 1e-3
+    assert same.mean() > (0.98 if name == "column" else 0.5)
 
 
 @needs_gcc
@@ -175,6 +200,20 @@ def test_other_arms(tmp_path, chain, method):
     assert reached.all()
     missed = chain.base_from_tool(joints).inverse() @ chain.base_from_tool(q)
     assert np.linalg.norm(missed.translation, axis=1).max() < 1e-5
+
+
+@needs_gcc
+@BOTH
+def test_the_arm_all_but_outstretched(compiled, precision):
+    """Where two branches meet, rounding of the goal is felt most: the closed form alone would miss some."""
+    arm = compiled("closed-form", precision)
+    q, _ = goals_inside(arm.arm, 500, seed=21)
+    q[:, 2] = np.random.default_rng(3).choice([1, -1], 500) * 10.0 ** np.linspace(-9, -2, 500)
+    goals = rows(arm.arm.chain.base_from_tool(q))
+    reached, joints = arm.solve_many(goals, np.roll(q, 1, axis=0))
+    assert reached.all()
+    missed = arm.arm.chain.base_from_tool(joints).inverse() @ arm.arm.chain.base_from_tool(q)
+    assert np.linalg.norm(missed.translation, axis=1).max() < WITHIN[precision][0]
 
 
 @needs_gcc

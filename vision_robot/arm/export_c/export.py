@@ -14,7 +14,7 @@ from vision_robot.arm.export_c.fingerprint import fingerprint
 from vision_robot.arm.export_c.precision import Precision, precision_named
 from vision_robot.arm.export_c.starts import Starts, covering_starts
 from vision_robot.arm.export_c.straight_line import StraightLine, straight_line
-from vision_robot.arm.export_c.words import cases, polish_steps, rendered, source, words_of
+from vision_robot.arm.export_c.words import cases, rendered, source, words_of
 from vision_robot.arm.model import Arm
 from vision_robot.arm.task import Task
 from vision_robot.errors import BadParameter, UnknownStructure
@@ -93,11 +93,10 @@ def export_c(
     else:
         every = _kernel(_part(closed.function, "branches", 0), "vr_kernel_branches", ["goal"], ["q"], real)
         error = _kernel(_error(chain, task), "vr_kernel_error", ["q", "goal"], ["error"], real)
-        kernels += [every, error] + [step] * (polish_steps(closed) > 0)
-        # Every branch inside the limits is checked, and the answer once more.
-        each = cycles(error.operations, real) + polish_steps(closed) * cycles(step.operations, real)
-        most = cycles(every.operations, real) + (closed.branches + 1) * each
-        mean = most
+        kernels += [every, error, step]
+        # One branch inside the limits, or all of them, is looked at; then the answer once more.
+        mean = cycles(every.operations, real) + 2 * cycles(error.operations, real)
+        most = mean + (closed.branches - 1) * cycles(error.operations, real)
     one = kernels[1].operations
     words = {"cycles": mean, "target": TARGETS[target], "cases": cases(arm.chain, real, seed)}
     fill = words_of(arm, chain, real, task, kernels, starts=starts, closed=closed) | words

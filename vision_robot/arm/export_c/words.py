@@ -19,10 +19,12 @@ from vision_robot.geometry import SerialChain
 if TYPE_CHECKING:
     from vision_robot.arm.closed_form import ClosedForm
 
-__all__ = ["SPREAD", "cases", "polish_steps", "rendered", "source", "words_of"]
+__all__ = ["SPREAD", "cases", "rendered", "source", "words_of"]
 
 SPREAD = 60
 """Starts beyond the table before a goal counts as out of reach."""
+POLISH = 6
+"""Steps at most on a branch of the closed form that just misses the goal."""
 CASES = 32
 """Of the self-test."""
 
@@ -49,11 +51,6 @@ def rendered(name: str, fill: Mapping[str, Any]) -> str:
     return engine.from_string(source(f"{name}.j2")).render(fill)
 
 
-def polish_steps(closed: "ClosedForm | None") -> int:
-    """Steps that an answer of the closed form needs: none where the arm is exactly of its kind."""
-    return 0 if closed is None or closed.exact else 3
-
-
 def words_of(
     arm: Arm,
     chain: SerialChain,
@@ -76,7 +73,8 @@ def words_of(
         "task_words": TASKS[task],
         "numeric": closed is None,
         "structure": "" if closed is None else closed.structure,
-        "polish": polish_steps(closed),
+        "polish": POLISH,
+        "near": 1e-3,
         "branches": 0 if closed is None else closed.branches,
         "method_words": method,
         "choice_words": "from the nearest start that leads there, `now` first"

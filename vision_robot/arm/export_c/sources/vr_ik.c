@@ -85,20 +85,18 @@ static vr_real apart(const vr_real *a, const vr_real *b)
     return sum;
 }
 
-#if VR_POLISH
-
-/* The arm's axes are a little off those that the closed form is exact for: finish by steps on the arm as it is. */
-static void polish(const vr_real goal[12], vr_real q[VR_JOINTS])
+/* Finish a branch that all but reaches the goal: rounding is felt most where branches meet, and the arm's axes may be a
+ * little off those that the closed form is exact for. */
+static void polish(const vr_real goal[12], vr_real q[VR_JOINTS], vr_real error[2])
 {
-    vr_real next[VR_JOINTS], error[2];
+    vr_real next[VR_JOINTS];
     int step;
-    for (step = 0; step < VR_POLISH; step++) {
+    for (step = 0; step < VR_POLISH && !within(error) && error[0] <= VR_NEAR && error[1] <= VR_NEAR; step++) {
         vr_kernel_step(q, goal, next, error);
         copy(next, q);
+        vr_kernel_error(q, goal, error);
     }
 }
-
-#endif
 
 int vr_branches(const vr_real base_from_tool[12], vr_real q[VR_BRANCHES][VR_JOINTS])
 {
@@ -113,13 +111,12 @@ int vr_branches(const vr_real base_from_tool[12], vr_real q[VR_BRANCHES][VR_JOIN
         }
         if (!good)
             continue;
-#if VR_POLISH
-        polish(base_from_tool, q[found]);
-#endif
+        vr_kernel_error(q[found], base_from_tool, error);
+        polish(base_from_tool, q[found], error);
+        good = within(error);
         for (i = 0; i < found && good; i++) /* branches meet where the arm is singular */
             good = apart(q[i], q[found]) > VR_SAME;
-        vr_kernel_error(q[found], base_from_tool, error);
-        found += good && within(error);
+        found += good;
     }
     return found;
 }
