@@ -54,7 +54,8 @@ def python_branches(arm: Arm, goals: np.ndarray) -> list[np.ndarray]:
 def test_a_thousand_goals_are_answered_as_in_python(compiled, method, precision, name):
     arm = compiled(method, precision, name)
     chain = arm.arm.chain
-    q, goals = goals_inside(arm.arm, TARGETS, seed=3)
+    targets = TARGETS if name == "column" else 300
+    q, goals = goals_inside(arm.arm, targets, seed=3)
     nows = np.roll(q, 1, axis=0)
     reached, joints = arm.solve_many(goals, nows)
     assert reached.all()
@@ -80,7 +81,7 @@ def test_a_thousand_goals_are_answered_as_in_python(compiled, method, precision,
         assert off.min() < max(metres, radians) / loosest
         if method == "closed-form":
             assert off.argmin() == spread.argmin()
-    assert firm > 0.8 * TARGETS
+    assert firm > 0.8 * targets
 
 
 @needs_gcc
