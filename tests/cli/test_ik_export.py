@@ -68,10 +68,9 @@ def test_bad_words_are_refused(tmp_path, words, error, says):
 
 def test_an_unknown_structure_has_no_closed_form(tmp_path):
     urdf = tmp_path / "arm.urdf"
-    joint = (
-        '<joint name="j{0}" type="revolute"><parent link="l{0}"/><child link="l{1}"/>'
-        '<origin xyz="0.1 0.02 0.2" rpy="0.3 0.4 0.5"/><axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>'
-    )
+    joint = """<joint name="j{0}" type="revolute"><parent link="l{0}"/><child link="l{1}"/>
+        <origin xyz="0.1 0.02 0.2" rpy="0.3 0.4 0.5"/><axis xyz="0 0 1"/>
+        <limit lower="-2" upper="2" effort="1" velocity="1"/></joint>"""
     links = "".join(f'<link name="l{i}"/>' for i in range(7))
     urdf.write_text(f'<robot name="odd">{links}{"".join(joint.format(i, i + 1) for i in range(6))}</robot>')
     result = run(urdf, "-o", tmp_path / "c", "--method", "closed-form")
