@@ -24,6 +24,9 @@ __all__ = ["InverseKinematics", "Method", "Tolerance"]
 TRIES, STEPS = 60, 15
 """Starts and steps of the first search: all but some in a hundred thousand goals are found by it."""
 
+FEW_TRIES = 24
+"""Starts of a search for maps."""
+
 STUBBORN_STEPS = 120
 """Steps of the second search, from every start there is."""
 
@@ -102,6 +105,18 @@ class InverseKinematics:
             q = self._unwound(q, present)
         return self._judged(goals, q, branch)
 
+    def sketch(self, base_from_tool: SE3) -> tuple[Float[Array, "goals n"], Bool[Array, "goals"]]:
+        """Joint values for each goal and whether they reach it, without dwelling on what looks out of reach.
+
+        For maps of many goals most of which are out of reach: `solve` would look for those at length.
+        """
+        goals = goal_rows(base_from_tool, self.arm.chain, self.arm.reach_m)
+        if self._exact and self.task is Task.POSE:
+            q, branch = self._from_closed_form(goals, None, search=False)
+            return q, branch >= 0
+        q = self.engine.numeric(goals, first=None, tries=FEW_TRIES, iterations=2 * STEPS)
+        return q, self.reached(self.engine.errors(goals, q))
+
     def branches(self, base_from_tool: SE3) -> Branches:
         """All solutions of each goal inside the limits, each joint vector once.
 
@@ -109,20 +124,22 @@ class InverseKinematics:
         spare has infinitely many, of which these are some.
         """
         goals = goal_rows(base_from_tool, self.arm.chain, self.arm.reach_m)
-        if self._exact:
+        # A closed form answers whole poses: of what a lesser task leaves free it knows one value only.
+        if self._exact and self.task is Task.POSE:
             q, errors = self.engine.closed(goals)
         else:
-            candidates = self._seeds(goals) if self.uses_closed_form else self._searched(goals)
+            seeded = self.uses_closed_form and self.task is Task.POSE
+            candidates = self._seeds(goals) if seeded else self._searched(goals)
             q = np.clip(candidates, *self.arm.chain.limits.T)
             flat = self._errors(np.repeat(goals, q.shape[1], axis=0), q.reshape(-1, q.shape[2]))
             errors = flat.reshape(*q.shape[:2], 2)
         limits = self.arm.chain.limits
         inside = np.clip(q, *limits.T)
-        right = (np.abs(inside - q) <= SLACK).all(axis=2) & self._reached(errors)
+        right = (np.abs(inside - q) <= SLACK).all(axis=2) & self.reached(errors)
         return Branches.of(self.arm.chain.joint_names, inside, errors, right, self._periods)
 
     def _from_closed_form(
-        self, goals: Float[Array, "goals 12"], near: Float[Array, "rows n"] | None
+        self, goals: Float[Array, "goals 12"], near: Float[Array, "rows n"] | None, *, search: bool = True
     ) -> tuple[Float[Array, "goals n"], Int[Array, "goals"]]:
         q, _, branch = self.engine.choose(
             goals,
@@ -132,7 +149,7 @@ class InverseKinematics:
             tolerance=(self.tolerance.position_m, self.tolerance.angle_rad),
         )
         left = np.flatnonzero(branch < 0)
-        if len(left) and self.method is Method.AUTO:
+        if len(left) and search and self.method is Method.AUTO:
             # Nothing a closed form misses should be reachable; that is not taken on trust.
             first = near if near is None or len(near) == 1 else near[left]
             q[left] = self._numeric(goals[left], first, seeds=q[left])
@@ -145,7 +162,7 @@ class InverseKinematics:
         candidates = self._seeds(goals)
         count, branches, n = candidates.shape
         errors = self._errors(np.repeat(goals, branches, axis=0), candidates.reshape(-1, n))
-        right = self._reached(errors).reshape(count, branches)
+        right = self.reached(errors).reshape(count, branches)
         off = candidates - (self._middle if near is None else near[:, None, :])
         weights = 1 / np.maximum(self._range, 1e-9) ** 2 if near is None else self._weights
         cost = np.where(right, self._wrapped(off) ** 2 @ weights, np.inf)
@@ -176,7 +193,7 @@ class InverseKinematics:
         if first is not None:
             first = np.clip(np.broadcast_to(first, (len(goals), len(self.arm))), *windows(self.arm.chain).T)
         q = self.engine.numeric(goals, first=first, tries=TRIES, iterations=STEPS)
-        left = np.flatnonzero(~self._reached(self.engine.errors(goals, q)))
+        left = np.flatnonzero(~self.reached(self.engine.errors(goals, q)))
         if len(left):
             every = len(self.program.starts.q)
             again = self.engine.numeric(
@@ -204,21 +221,17 @@ class InverseKinematics:
             q=q,
             position_error_m=errors[:, 0],
             orientation_error_rad=errors[:, 1],
-            converged=self._reached(errors) & self.arm.chain.within_limits(q),
+            converged=self.reached(errors) & self.arm.chain.within_limits(q),
             branch=branch,
         )
 
     def _errors(self, goals: Float[Array, "goals 12"], q: Float[Array, "goals n"]) -> Float[Array, "goals 2"]:
         errors = self.engine.errors(goals, q)
-        # The engines' measure is the sine up to a right angle and 1 - cos beyond it.
-        angle = np.where(
-            errors[:, 1] <= 1,
-            np.arcsin(np.minimum(errors[:, 1], 1)),
-            np.pi - np.arccos(np.clip(errors[:, 1] - 1, -1, 1)),
-        )
+        angle = 2 * np.arcsin(np.minimum(errors[:, 1] / 2, 1))  # engines measure the chord
         return np.stack([errors[:, 0], angle], axis=1)
 
-    def _reached(self, errors: Float[Array, "*goals 2"]) -> Bool[Array, "*goals"]:
+    def reached(self, errors: Float[Array, "*goals 2"]) -> Bool[Array, "*goals"]:
+        """Whether distance [m] and angle [rad] are within tolerance."""
         return (errors[..., 0] < self.tolerance.position_m) & (errors[..., 1] < self.tolerance.angle_rad)
 
     def _cost(self, goals: Float[Array, "goals 12"], q: Float[Array, "goals n"]) -> Float[Array, "goals"]:

@@ -114,4 +114,6 @@ def one_of(path: Path, kind: str, asked: str | None, names: Sequence[str], usual
             return name
     if len(known) == 1:
         return known[0]
-    raise BadArm(path, f"which {kind} is the tool? It has {', '.join(known) or 'none'}: name one with --tool")
+    if not known:
+        raise BadArm(path, f"it has no {kind}: mark the tool by one")
+    raise BadArm(path, f"which {kind} is the tool? It has {', '.join(known)}: name one with --tool")

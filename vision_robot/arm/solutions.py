@@ -1,5 +1,6 @@
 """What the solver answers: tables of joint values, one row a goal."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +29,13 @@ class Solutions:
 
     def __len__(self) -> int:
         return len(self.q)
+
+    @classmethod
+    def joined(cls, parts: Sequence["Solutions"]) -> "Solutions":
+        """Several tables as one, in their order."""
+        columns = ("q", "position_error_m", "orientation_error_rad", "converged", "branch")
+        whole = {name: np.concatenate([getattr(part, name) for part in parts]) for name in columns}
+        return cls(joint_names=parts[0].joint_names, **whole)
 
 
 @dataclass(frozen=True)

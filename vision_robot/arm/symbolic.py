@@ -49,7 +49,7 @@ def residual(chain: SerialChain, task: Task = Task.POSE) -> "Function":
     """``residual(q, goal) -> r, J, error``.
 
     r [m], with angles times the length scale, and J with ``r(q + dq) = r + J dq`` to first order; error
-    (2,) is the distance from the goal [m] and the angle to it [rad] (its sine where it is below 90 degrees).
+    (2,) is the distance from the goal [m] and 2 sin(angle / 2), which is the angle [rad] where that is small.
     """
     import casadi as ca
 
@@ -121,13 +121,15 @@ def _residual(chain: SerialChain, task: Task, q: "SX", goal: "SX") -> tuple["SX"
         # Half the sum of cross products is sin(angle) times the axis from R to the goal; its product with
         # Jw is the exact gradient of the chordal distance (Luh, Walker & Paul 1980).
         turn = sum((ca.cross(R[:, i], goal_R[:, i]) for i in range(3)), ca.SX.zeros(3)) / 2
-        # Past 90 degrees the sine falls again: one minus the cosine takes over.
+        # 2 sin(angle / 2) from the sine, which keeps its digits near zero; from the trace past 90 degrees.
         trace = sum((ca.dot(R[:, i], goal_R[:, i]) for i in range(3)), ca.SX(0))
-        less = (3 - trace) / 2
+        cosine = (trace - 1) / 2
+        from_sine = ca.sqrt(ca.dot(turn, turn) * 2 / (1 + ca.fmax(cosine, 0)))
+        chord = ca.if_else(cosine > 0, from_sine, ca.sqrt(ca.fmax(3 - trace, 0)))
         return (
             ca.vertcat(missing, -scale * turn),
             ca.vertcat(Jv, scale * Jw),
-            ca.vertcat(far, ca.fmax(ca.sqrt(ca.dot(turn, turn)), less)),
+            ca.vertcat(far, chord),
         )
     if task is Task.AXIS:
         off, rows = R[:, 2] - goal_R[:, 2], -_cross_matrix(R[:, 2])
