@@ -70,8 +70,9 @@ def figures(export: "Export") -> dict[str, object]:
         "stack_bytes": export.cost.stack,
         "link_code_bytes": export.cost.link_code,
         "operations": dict(export.operations),
-        "cycles_estimate": export.cycles,
-        "cycles_most_estimate": export.cycles_most,
+        "cycles_estimate": export.cycles.usual,
+        "cycles_most_estimate": export.cycles.most,
+        "cycles_given_up_estimate": export.cycles.given_up,
         "starts": None
         if starts is None
         else {
@@ -96,15 +97,20 @@ def told(export: "Export") -> list[str]:
     lines.append(f"vr_ik.c on a Cortex-M4F: code {cost.code} B, data {cost.data} B{stack}{link} ({measured})")
     counts = ", ".join(f"{count} {name}" for name, count in export.operations.most_common())
     lines.append(f"one {'solution' if export.starts is None else 'step'}: {counts}")
+    cycles = export.cycles
     if export.starts is None:
-        lines.append(f"one solve: about {export.cycles} cycles at most (estimated from the operations)")
+        lines.append(
+            f"one solve: about {cycles.usual} to {cycles.most} cycles (estimated from the operations)"
+        )
     else:
         starts = export.starts
         share = f"{starts.reached} of {starts.goals} goals drawn inside the limits"
         lines.append(
             f"starts: {len(starts.q)} in the table, which reach {share}; more follow where these do not"
         )
-        mean, most = export.cycles, export.cycles_most
-        lines.append(f"one solve: about {mean} cycles in the mean, {most} at most seen (estimated)")
+        lines.append(
+            f"one solve: about {cycles.usual} cycles in the mean, {cycles.most} at most seen (estimated)"
+        )
+        lines.append(f"a goal out of reach is given up after at most {cycles.given_up} cycles (estimated)")
     lines.append(f"try it: make -C {export.folder} test")
     return lines
