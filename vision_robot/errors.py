@@ -17,18 +17,24 @@ __all__ = [
     "BadInput",
     "BadParameter",
     "BadPath",
+    "BadPort",
     "BadPoseFile",
     "BadTable",
     "BadVideo",
     "BoardNotFound",
+    "CommandRefused",
     "ContradictingPoses",
     "DegeneratePoses",
     "DegenerateViews",
+    "LinkMismatch",
     "MissingLimits",
     "MissingOpenGL",
+    "MissingPackage",
     "MixedImageSizes",
+    "NoAnswer",
     "NoConvergence",
     "NoImages",
+    "NoScheduler",
     "TooFewPoses",
     "TooFewViews",
     "UnknownStructure",
@@ -71,6 +77,35 @@ class MissingOpenGL(VisionRobotError):
         )
 
 
+class NoAnswer(VisionRobotError):
+    """The other end of a serial line keeps silent."""
+
+    def __init__(self, port: str, message: str, sequence: int, tries: int, timeout_s: float):
+        self.port, self.message, self.sequence = port, message, sequence
+        self.tries, self.timeout_s = tries, timeout_s
+        super().__init__(
+            f"{port}: no answer to {message} number {sequence}, sent {tries} time(s) and waited for "
+            f"{1e3 * timeout_s:.0f} ms each: check cable, baud rate and that the receiver runs; "
+            "whether the command was carried out is not known"
+        )
+
+
+class CommandRefused(VisionRobotError):
+    """A microcontroller did not do what it was told, and said why."""
+
+    def __init__(self, port: str, message: str, sequence: int, status: str, meaning: str):
+        self.port, self.message, self.sequence, self.status = port, message, sequence, status
+        super().__init__(f"{port}: {message} number {sequence} was refused ({status}): {meaning}")
+
+
+class MissingPackage(VisionRobotError):
+    """An optional package is needed for what was asked."""
+
+    def __init__(self, package: str, purpose: str):
+        self.package, self.purpose = package, purpose
+        super().__init__(f"{purpose} needs the package {package}: install it with 'pip install {package}'")
+
+
 class BadInput(VisionRobotError):
     """The caller gave something that cannot be used and can mend it."""
 
@@ -92,6 +127,14 @@ class NoImages(BadInput):
             f"no image found in {', '.join(self.paths) or 'an empty list'}: "
             "give image files, a folder of images, a quoted pattern or a video"
         )
+
+
+class NoScheduler(BadInput):
+    """No cluster answers where one was named."""
+
+    def __init__(self, address: str, why: str):
+        self.address, self.why = address, why
+        super().__init__(f"no scheduler answers at {address} ({why}): start one with 'dask scheduler'")
 
 
 class UnreadableImage(BadInput):
@@ -215,6 +258,26 @@ class BadVideo(BadInput):
     def __init__(self, path: object, why: str):
         self.path, self.why = str(path), why
         super().__init__(f"{path} cannot be used as a video: {why}")
+
+
+class BadPort(BadInput):
+    """A serial port cannot be used."""
+
+    def __init__(self, port: str, why: str, there_are: Sequence[str]):
+        self.port, self.why, self.there_are = port, why, tuple(there_are)
+        known = ", ".join(there_are) or "none"
+        super().__init__(f"{port} cannot be used as a serial port ({why}): this machine has {known}")
+
+
+class LinkMismatch(BadInput):
+    """Computer and microcontroller do not speak of the same thing."""
+
+    def __init__(self, port: str, what: str, there: object, here: object):
+        self.port, self.what, self.there, self.here = port, what, there, here
+        super().__init__(
+            f"{port}: {what} is {there} at the microcontroller and {here} here: "
+            "give the arm it was built for, or export and flash it again"
+        )
 
 
 class BadArm(BadInput):

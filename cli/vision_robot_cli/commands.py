@@ -42,6 +42,14 @@ IK: dict[str, Command] = {
         "vision_robot_cli.ik_check:ik_check",
         "An arm's model: its kind, whether its kinematics hold together, a map of where it reaches.",
     ),
+    "export": Command(
+        "vision_robot_cli.ik_export:ik_export",
+        "C for a microcontroller: forward and inverse kinematics, and the receiver of joint commands.",
+    ),
+    "stream": Command(
+        "vision_robot_cli.ik_stream:ik_stream",
+        "Play a table of joint values to a microcontroller over a serial line.",
+    ),
 }
 
 COMMANDS: dict[str, Command | Group] = {
@@ -67,7 +75,7 @@ COMMANDS: dict[str, Command | Group] = {
     ),
     "ik": Group(
         IK,
-        "Inverse kinematics of an arm in an MJCF or URDF file: from poses to joints.",
+        "The arm: poses to joints, and C for its microcontroller.",
     ),
 }
 

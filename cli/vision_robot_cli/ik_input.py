@@ -17,7 +17,7 @@ from vision_robot.arm.workspace import tool_down
 from vision_robot.calibrate.hand_eye.rotations import from_quaternion
 from vision_robot.errors import BadGoal, BadInput, BadParameter
 from vision_robot.geometry import SE3
-from vision_robot_cli.arm_options import NUMBER, UNITS
+from vision_robot_cli.arm_quantities import NUMBER, UNITS
 from vision_robot_cli.goal_file import Goals, read_goals
 from vision_robot_cli.output import note
 
