@@ -5,17 +5,18 @@ from typing import Annotated
 
 import typer
 
-from vision_robot_cli.arm_options import ArmBase, ArmFile, ArmLimits, ArmTool
+from vision_robot_cli.arm_choice import ArmSource, Base, Limit, Tool, Wrist
 from vision_robot_cli.options import Json, Report, Seed
 
 __all__ = ["ik_check"]
 
 
 def ik_check(
-    arm: ArmFile = "column",
-    tool: ArmTool = None,
-    base: ArmBase = None,
-    limit: ArmLimits = None,
+    arm: ArmSource = "column",
+    tool: Tool = None,
+    wrist: Wrist = None,
+    base: Base = None,
+    limit: Limit = None,
     targets: Annotated[int, typer.Option(help="Targets drawn inside the limits.")] = 4000,
     height: Annotated[
         str | None, typer.Option(help="Height over the base of the map from above; else the widest.")
@@ -29,7 +30,7 @@ def ik_check(
 ) -> None:
     """Check an arm's model: kind, limits, forward against inverse kinematics, workspace.
 
-    Example: vr ik check --arm my_arm.xml --report arm.html
+    Example: vr ik check my_arm.xml --report arm.html
     """
     import shlex
     import sys
@@ -40,7 +41,8 @@ def ik_check(
     from vision_robot.errors import BadParameter
     from vision_robot.files import check_place, write_text
     from vision_robot_cli import ik_check_output
-    from vision_robot_cli.arm_options import arm_of, height_of
+    from vision_robot_cli.arm_choice import arm_of
+    from vision_robot_cli.arm_quantities import height_of
     from vision_robot_cli.output import emit_json, note
 
     for place in (out, report):
@@ -49,7 +51,7 @@ def ik_check(
     if targets < 1:
         raise BadParameter("--targets", targets, "1 or more")
     at = height_of(height) if height else None
-    robot = arm_of(arm, tool, base, limit)
+    robot = arm_of(arm, tool, wrist, base, limit)
     checks = check_consistency(robot, targets=targets, seed=seed)
     found = workspace(InverseKinematics(robot), height_m=at)
     if out:

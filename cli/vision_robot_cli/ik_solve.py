@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from vision_robot_cli.arm_options import ArmBase, ArmFile, ArmLimits, ArmTool
+from vision_robot_cli.arm_choice import Base, Limit, TaskName, Tool, Wrist
 from vision_robot_cli.options import Json, Out
 
 __all__ = ["ik_solve"]
@@ -26,13 +26,14 @@ def ik_solve(
     station: Annotated[
         Path | None, typer.Option(help="Pose file of base_from_station; goals are then on the station.")
     ] = None,
-    arm: ArmFile = "column",
-    tool: ArmTool = None,
-    base: ArmBase = None,
-    limit: ArmLimits = None,
-    task: Annotated[
-        str, typer.Option(help="What of the goal counts: pose, axis, tilt or position.")
-    ] = "pose",
+    arm: Annotated[
+        str, typer.Option(help="MJCF or URDF file, or column: the arm that comes with the tool.")
+    ] = "column",
+    tool: Tool = None,
+    wrist: Wrist = None,
+    base: Base = None,
+    limit: Limit = None,
+    task: TaskName = "pose",
     method: Annotated[str, typer.Option(help="auto, closed-form or numeric.")] = "auto",
     near: Annotated[
         str | None, typer.Option(help="Present joints, to stay near: d1=100mm,theta2=30deg.")
@@ -57,13 +58,14 @@ def ik_solve(
     """
     from vision_robot.files import check_place
     from vision_robot_cli import ik_input, ik_output
-    from vision_robot_cli.arm_options import arm_of, joints_of
+    from vision_robot_cli.arm_choice import arm_of
+    from vision_robot_cli.arm_quantities import joints_of
     from vision_robot_cli.output import check_limit, emit_json
 
     if out:
         check_place(out)
     chosen = ik_input.choices(task, method, prefer)
-    robot = arm_of(arm, tool, base, limit)
+    robot = arm_of(arm, tool, wrist, base, limit)
     goals = ik_input.goals(poses, position, yaw, quaternion, station)
     present = joints_of(near, robot, "--near") if near else None
     answer = ik_input.solved(robot, goals, chosen, present, arm, every=every)

@@ -7,6 +7,7 @@ import numpy as np
 from vision_robot.arm.workspace import Slice, Workspace
 from vision_robot.report.figure import FAINT, INK, WIDTH_IN, draw
 from vision_robot.report.page import Figure
+from vision_robot.types import Array
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
@@ -48,17 +49,40 @@ def workspace_figures(found: Workspace) -> tuple[Figure, Figure]:
 def _paint(canvas: "Canvas", part: Slice, best: float, up: str, level_mm: float | None = None) -> None:
     axes = canvas.add_subplot()
     x, y = 1000 * part.across_m, 1000 * part.up_m
-    shares = np.where(part.reached, part.manipulability / best, np.nan)
-    bands = axes.contourf(x, y, shares, levels=np.linspace(0, 1, LEVELS + 1), cmap="Blues")
+    bands = axes.contourf(x, y, _filled(part) / best, levels=np.linspace(0, 1, LEVELS + 1), cmap="Blues")
+    reached = part.reached.astype(float)
+    axes.contourf(x, y, reached, levels=[-0.5, 0.5], colors=["white"])
     # Where the arm is stretched the measure is zero and nearly white: the border says where reach ends.
-    axes.contour(x, y, part.reached.astype(float), levels=[0.5], colors=[INK], linewidths=0.7)
+    axes.contour(x, y, reached, levels=[0.5], colors=[INK], linewidths=0.7)
     axes.plot(0, 0, "+", color=INK, markersize=6)
     if level_mm is not None:
         axes.axhline(level_mm, color=INK, linewidth=0.8, linestyle=(0, (1, 2)))
     axes.set_aspect("equal")
+    axes.set_ylim(*_extent(y, part.reached.any(axis=1), x[-1] - x[0]))
     axes.set_xlabel("x [mm]")
     axes.set_ylabel(up)
     axes.grid(color=FAINT, linewidth=0.3)
     bar = canvas.colorbar(bands, ax=axes, shrink=0.8, pad=0.02)
     bar.set_label("manipulability, share of the best")
     bar.outline.set_linewidth(0.4)  # type: ignore[union-attr]
+
+
+def _filled(part: Slice) -> Array:
+    """The measure with the value of the nearest place that is reached where there is none.
+
+    So that bands run up to the border instead of ending half a cell before it.
+    """
+    from scipy.ndimage import distance_transform_edt
+
+    if not part.reached.any():
+        return np.zeros(part.reached.shape)
+    nearest = np.asarray(distance_transform_edt(~part.reached, return_distances=False, return_indices=True))
+    return part.manipulability[nearest[0], nearest[1]]
+
+
+def _extent(y: Array, rows: Array, width: float) -> tuple[float, float]:
+    """What to show upright: where something is reached and the base, no more than a square."""
+    used = np.concatenate([y[rows], [0.0]])
+    low, high = used.min(), used.max()
+    room = 0.08 * width
+    return max(low - room, y[0]), min(high + room, y[-1])
