@@ -21,6 +21,7 @@ __all__ = [
     "BadInput",
     "BadParameter",
     "BadPath",
+    "BadPort",
     "BadPoseFile",
     "BadDataset",
     "BadRecipe",
@@ -32,6 +33,9 @@ __all__ = [
     "DegeneratePoses",
     "BadPort",
     "CommandRefused",
+    "CommandRefused",
+    "ContradictingPoses",
+    "DegeneratePoses",
     "DegenerateViews",
     "LinkMismatch",
     "MissingLimits",
@@ -451,9 +455,17 @@ class BadArm(BadInput):
 class BadGoal(BadInput):
     """A pose can be no goal of an arm."""
 
-    def __init__(self, row: int, why: str, where: str = "goal"):
+    def __init__(self, row: int, why: str, where: str = ""):
         self.row, self.why, self.where = row, why, where
-        super().__init__(f"{where} {row} cannot be used: {why}")
+        super().__init__(f"{where or f'goal {row}'} cannot be used: {why}")
+
+
+class BadPath(BadInput):
+    """No branch of an arm follows a path to its end."""
+
+    def __init__(self, share: float, why: str):
+        self.share, self.why = share, why
+        super().__init__(f"the path can be followed for {100 * share:.0f} % of its way: {why}")
 
 
 class BadPath(BadInput):

@@ -45,6 +45,25 @@ EXTRINSICS: dict[str, Command] = {
     ),
 }
 
+IK: dict[str, Command] = {
+    "solve": Command(
+        "vision_robot_cli.ik_solve:ik_solve",
+        "Joint values for poses of the tool, from a file or options; or why none reach them.",
+    ),
+    "check": Command(
+        "vision_robot_cli.ik_check:ik_check",
+        "An arm's model: its kind, whether its kinematics hold together, a map of where it reaches.",
+    ),
+    "export": Command(
+        "vision_robot_cli.ik_export:ik_export",
+        "C for a microcontroller: forward and inverse kinematics, and the receiver of joint commands.",
+    ),
+    "stream": Command(
+        "vision_robot_cli.ik_stream:ik_stream",
+        "Play a table of joint values to a microcontroller over a serial line.",
+    ),
+}
+
 COMMANDS: dict[str, Command | Group] = {
     "benchmark": Command(
         "vision_robot_cli.benchmark:benchmark",
@@ -89,6 +108,9 @@ COMMANDS: dict[str, Command | Group] = {
     "synth": Command(
         "vision_robot_cli.synth:synth",
         "Render a dataset with exact truth from a recipe: tracks, masks, flow, poses.",
+    "ik": Group(
+        IK,
+        "The arm: poses to joints, and C for its microcontroller.",
     ),
 }
 

@@ -93,6 +93,23 @@ def test_joints_of_more_than_a_turn_are_wound_to_where_they_are():
     assert UR5E.within_limits(found.q).all()
 
 
+@pytest.mark.parametrize("compiled", COMPILED)
+def test_the_nearest_branch_is_the_nearest_that_the_limits_allow(compiled):
+    """Whole turns that would pass a limit bring no branch nearer; looked for in all branches and turns."""
+    ik = InverseKinematics(arm_of(UR5E), compiled=compiled)
+    rng = np.random.default_rng(4)
+    low, high = UR5E.limits.T
+    q, near = (rng.uniform(low, high, size=(100, 6)) for _ in range(2))
+    goals = UR5E.base_from_tool(q)
+    found, branches = ik.solve(goals, near=near), ik.branches(goals)
+    turns = 2 * np.pi * np.array([-1, 0, 1])
+    for k in range(100):
+        every = branches.of_goal(k)[:, :, None] + turns
+        allowed = (every >= low[:, None]) & (every <= high[:, None])
+        least = np.where(allowed, np.abs(every - near[k][:, None]), np.inf).min(axis=2)
+        assert np.linalg.norm(found.q[k] - near[k]) == pytest.approx(np.linalg.norm(least, axis=1).min())
+
+
 def test_without_present_joints_the_middle_of_the_ranges_is_preferred():
     arm = read_arm("column")
     ik = InverseKinematics(arm)
@@ -156,7 +173,7 @@ def test_what_cannot_be_reached_is_not_called_reached():
     for ik in (InverseKinematics(arm), InverseKinematics(arm, method=Method.NUMERIC)):
         found = ik.solve(SE3(np.tile(down, (4, 1, 1)), places))
         assert found.converged.tolist() == [False, False, False, True]
-        assert found.position_error_m[0] == pytest.approx(0.25, abs=1e-3)
+        assert 0.19 < found.position_error_m[0] <= 0.25  # straight on it is 0.25 m; leaning over it is less
         assert arm.chain.within_limits(found.q).all()
 
 

@@ -118,6 +118,6 @@ class Engine(ABC):
     ) -> tuple[Float[Array, "goals n"], Float[Array, "goals 2"], Int[Array, "goals"]]:
         """The closed form's branch nearest to `near` (one row, or one a goal) within limits and tolerance.
 
-        Nearest by the weighted sum of squares, whole `periods` left out where they are not zero.
+        Nearest by the weighted sum of squares, each joint with a period turned towards `near` by whole ones.
         Joint values, errors and the branch; -1, with the one that misses least, where none is right.
         """

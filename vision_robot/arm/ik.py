@@ -11,7 +11,7 @@ from vision_robot.arm.compiled_engine import compiled_engine
 from vision_robot.arm.engine import Engine, program_of
 from vision_robot.arm.goals import goal_rows
 from vision_robot.arm.model import Arm
-from vision_robot.arm.numpy_engine import SLACK, NumpyEngine
+from vision_robot.arm.numpy_engine import SLACK, NumpyEngine, unwound
 from vision_robot.arm.solutions import Branches, Solutions
 from vision_robot.arm.starts import windows
 from vision_robot.arm.task import Task
@@ -102,7 +102,7 @@ class InverseKinematics:
         else:
             q, branch = self._numeric(goals, present), np.full(len(goals), -1)
         if present is not None:
-            q = self._unwound(q, present)
+            q = unwound(q, present, self._periods, self.arm.chain.limits)
         return self._judged(goals, q, branch)
 
     def sketch(self, base_from_tool: SE3) -> tuple[Float[Array, "goals n"], Bool[Array, "goals"]]:
@@ -163,9 +163,11 @@ class InverseKinematics:
         count, branches, n = candidates.shape
         errors = self._errors(np.repeat(goals, branches, axis=0), candidates.reshape(-1, n))
         right = self.reached(errors).reshape(count, branches)
+        if near is not None:
+            candidates = unwound(candidates, near[:, None, :], self._periods, self.arm.chain.limits)
         off = candidates - (self._middle if near is None else near[:, None, :])
         weights = 1 / np.maximum(self._range, 1e-9) ** 2 if near is None else self._weights
-        cost = np.where(right, self._wrapped(off) ** 2 @ weights, np.inf)
+        cost = np.where(right, off**2 @ weights, np.inf)
         branch = np.where(right.any(axis=1), np.argmin(cost, axis=1), -1)
         q = candidates[np.arange(count), np.maximum(branch, 0)].copy()
         left = np.flatnonzero(branch < 0)
@@ -262,17 +264,3 @@ class InverseKinematics:
     def _periods(self) -> Float[Array, "n"]:
         """A whole turn for joints that can turn farther than that, else zero."""
         return np.where(~self.arm.chain.slides & (self._range > 2 * np.pi + 1e-6), 2 * np.pi, 0.0)
-
-    def _wrapped(self, off: Float[Array, "*rows n"]) -> Float[Array, "*rows n"]:
-        turning = self._periods > 0
-        return np.where(turning, off - 2 * np.pi * np.round(off / (2 * np.pi)), off)
-
-    def _unwound(self, q: Float[Array, "goals n"], near: Float[Array, "rows n"]) -> Float[Array, "goals n"]:
-        """Joints that can turn farther than a whole turn, by as many turns as bring them nearest."""
-        turning = self._periods > 0
-        if not turning.any():
-            return q
-        low, high = self.arm.chain.limits.T
-        turns = np.round((near - q) / (2 * np.pi))
-        turns = np.clip(turns, np.ceil((low - q) / (2 * np.pi)), np.floor((high - q) / (2 * np.pi)))
-        return np.where(turning, q + 2 * np.pi * turns, q)

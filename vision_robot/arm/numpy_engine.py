@@ -6,7 +6,7 @@ from vision_robot.arm.engine import CLOSE, Engine, Program, Rows
 from vision_robot.arm.vectorised import Vectorised
 from vision_robot.types import Array, Float, Int
 
-__all__ = ["SLACK", "NumpyEngine"]
+__all__ = ["SLACK", "NumpyEngine", "unwound"]
 
 SLACK = 1e-9
 """Joint values this far past a limit, by rounding, are put onto it [m or rad]."""
@@ -16,6 +16,19 @@ CHUNK = 8192
 
 FULL = 256
 """Rows below which another row costs next to nothing."""
+
+
+def unwound(
+    q: Float[Array, "*rows n"],
+    near: Float[Array, "*near n"],
+    periods: Float[Array, "n"],
+    limits: Float[Array, "n 2"],
+) -> Float[Array, "*rows n"]:
+    """Joints that have a period, moved by whole ones towards `near` as far as the limits let them."""
+    turning = periods > 0
+    period, (low, high) = np.where(turning, periods, 1.0), limits.T
+    turns = np.clip(np.round((near - q) / period), np.ceil((low - q) / period), np.floor((high - q) / period))
+    return np.where(turning, q + period * turns, q)
 
 
 class NumpyEngine(Engine):
@@ -176,9 +189,10 @@ class NumpyEngine(Engine):
             right = (np.abs(q[b] - within) <= SLACK).all(axis=0)
             right &= (errors[b, 0] < tolerance[0]) & (errors[b, 1] < tolerance[1])
             q[b] = within
-            off = within - near
-            off[turning] -= 2 * np.pi * np.round(off[turning] / (2 * np.pi))
-            far = weights @ off**2
+            if turning.any():
+                within = unwound(within.T, near.T, periods, self.program.chain.limits).T
+                q[b] = within
+            far = weights @ (within - near) ** 2
             miss = errors[b, 0] ** 2 + (self.program.scale * errors[b, 1]) ** 2
             costs[b] = np.where(right, far, 1e12 * (1 + miss))
         which, every = np.argmin(costs, axis=0), np.arange(len(goals))

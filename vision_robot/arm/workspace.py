@@ -45,6 +45,7 @@ def manipulability(jacobian: Float[Array, "*rows 6 n"]) -> Float[Array, "*rows"]
 
 
 def workspace(ik: InverseKinematics, *, height_m: float | None = None, cells: int = 81) -> Workspace:
+def workspace(ik: InverseKinematics, *, height_m: float | None = None, cells: int = 121) -> Workspace:
     """Both slices of the workspace with the tool down; without a height the one that most places share.
 
     `ik` must be for poses. The tool's x points away from the base's z axis; yaw is free for whatever the

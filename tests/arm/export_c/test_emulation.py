@@ -77,9 +77,9 @@ def test_single_precision_calls_no_double_arithmetic_and_no_heap(exported):
 def test_the_cost_is_measured_and_the_estimate_of_cycles_is_of_its_size(exported):
     export = exported("closed-form", "single")
     assert export.cost.source == "arm-none-eabi-gcc"
-    assert 2000 < export.cost.code < 4500
+    assert 4500 < export.cost.code < 7000
     assert export.cost.data == 0
     assert 200 < export.cost.stack < 700
     q, goals = goals_inside(column_arm(), 12, seed=1)
     instructions = instructions_per_solve(export.folder, goals, np.roll(q, 1, axis=0))
-    assert 0.3 < instructions / export.cycles < 1.2
+    assert 0.5 < instructions / export.cycles.usual < 1.0

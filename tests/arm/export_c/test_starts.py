@@ -45,12 +45,12 @@ def test_c_reaches_what_the_rehearsal_promised(compiled):
 
 
 def test_limits_of_single_precision_are_never_wider():
-    from vision_robot.arm.export_c.export import _representable
+    from vision_robot.arm.export_c.kernels import representable
     from vision_robot.arm.export_c.precision import SINGLE
 
     chain = read_arm("column").chain
     odd = replace(chain, limits=chain.limits + np.array([1e-9, -1e-9]))
-    rounded = _representable(odd, SINGLE).limits
+    rounded = representable(odd, SINGLE).limits
     assert (rounded[:, 0] >= odd.limits[:, 0]).all()
     assert (rounded[:, 1] <= odd.limits[:, 1]).all()
     assert np.abs(rounded - odd.limits).max() < 1e-6

@@ -5,8 +5,9 @@ import pytest
 
 from tests.arm.compiled import CReceiver, needs_gcc
 from vision_robot.arm.export_c import fingerprint
-from vision_robot.arm.stream import JointTable, Link, play
-from vision_robot.errors import CommandRefused
+from vision_robot.arm.stream import JointTable, Link, PoseTable, play
+from vision_robot.errors import BadParameter, CommandRefused
+from vision_robot.geometry import SE3
 
 pytestmark = needs_gcc
 
@@ -51,6 +52,24 @@ def test_rows_go_out_when_their_time_has_come(opened, rate):
     assert min(late) >= 0
     assert max(late) < 2e-3
     assert abs(clock.now - 100 - table.time_s[-1] / rate) < 2e-2
+
+
+def test_poses_are_solved_at_the_other_end(opened):
+    receiver, link, chain = opened
+    table = table_of(chain)
+    poses, clock = chain.base_from_tool(table.q), Clock()
+    answers = [a for _, a in play(link, PoseTable(table.time_s, poses), clock=clock, sleep=clock.sleep)]
+    assert [time for time, _ in receiver.moves] == [round(1e3 * t) for t in table.time_s]
+    reached = chain.base_from_tool(np.array([answer.q for answer in answers]))
+    assert np.abs(reached.translation - poses.translation).max() < 1e-5
+    # One branch all along: the receiver solves from where it stands.
+    assert np.abs(np.diff([answer.q for answer in answers], axis=0)).max() < 0.5
+
+
+@pytest.mark.parametrize("time", [[0.0, 0.0], [-1.0, 0.0], [0.0, np.nan], [0.0]])
+def test_bad_times_of_poses(time):
+    with pytest.raises(BadParameter):
+        PoseTable(np.array(time), SE3.identity(2))
 
 
 def test_an_error_stops_the_arm(opened):

@@ -1,29 +1,29 @@
 """An arm's kinematics as a folder of C for a microcontroller."""
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from vision_robot.arm import symbolic
-from vision_robot.arm.export_c.cost import Cost, cycles, estimated, measured
+from vision_robot.arm.export_c.cost import (
+    Cost,
+    Cycles,
+    closed_form_cycles,
+    estimated,
+    measured,
+    numeric_cycles,
+)
 from vision_robot.arm.export_c.fingerprint import fingerprint
+from vision_robot.arm.export_c.kernels import kernels_of, representable
 from vision_robot.arm.export_c.precision import Precision, precision_named
 from vision_robot.arm.export_c.starts import Starts, covering_starts
-from vision_robot.arm.export_c.straight_line import StraightLine, straight_line
-from vision_robot.arm.export_c.words import cases, polish_steps, rendered, source, words_of
+from vision_robot.arm.export_c.words import SPREAD, cases, rendered, source, words_of
 from vision_robot.arm.model import Arm
 from vision_robot.arm.task import Task
 from vision_robot.errors import BadParameter, UnknownStructure
 from vision_robot.files import write_text
-from vision_robot.geometry import SerialChain
 
 if TYPE_CHECKING:
-    from casadi import Function
-
     from vision_robot.arm.closed_form import ClosedForm
 
 __all__ = ["METHODS", "TARGETS", "Export", "export_c"]
@@ -50,10 +50,7 @@ class Export:
     starts: Starts | None
     operations: Counter[str]
     """Of one call of the closed form, or of one step."""
-    cycles: int
-    """Estimate for one solve (numeric: the mean) on a Cortex-M4F."""
-    cycles_most: int
-    """Estimate for the longest solve seen."""
+    cycles: Cycles
     cost: Cost
     fingerprint: int
 
@@ -79,33 +76,24 @@ def export_c(
         raise BadParameter("target", target, " or ".join(TARGETS))
     real = precision_named(precision)
     folder = Path(folder)
-    chain = _representable(arm.chain, real)
+    chain = representable(arm.chain, real)
     closed = _closed_form(arm, task, method)
-    kernels = [_kernel(symbolic.base_from_tool(chain), "vr_kernel_forward", ["q"], ["pose"], real)]
-    step = _kernel(symbolic.lm_step(chain, task), "vr_kernel_step", ["q", "goal"], ["next", "error"], real)
-    starts = None
+    kernels = kernels_of(chain, task, real, closed)
     if closed is None:
-        kernels.append(step)
-        starts = covering_starts(chain, task, within=(real.reached_m, real.reached_rad), seed=seed)
-        mean, most = (
-            round(cycles(step.operations, real) * n) for n in (starts.steps_mean, starts.steps_most)
-        )
+        starts = covering_starts(chain, task, real=real, seed=seed)
+        cycles = numeric_cycles(kernels["step"].operations, starts, SPREAD, real)
     else:
-        every = _kernel(_part(closed.function, "branches", 0), "vr_kernel_branches", ["goal"], ["q"], real)
-        error = _kernel(_error(chain, task), "vr_kernel_error", ["q", "goal"], ["error"], real)
-        kernels += [every, error] + [step] * (polish_steps(closed) > 0)
-        # Every branch inside the limits is checked, and the answer once more.
-        each = cycles(error.operations, real) + polish_steps(closed) * cycles(step.operations, real)
-        most = cycles(every.operations, real) + (closed.branches + 1) * each
-        mean = most
-    one = kernels[1].operations
-    words = {"cycles": mean, "target": TARGETS[target], "cases": cases(arm.chain, real, seed)}
+        starts = None
+        cycles = closed_form_cycles(
+            kernels["branches"].operations, kernels["error"].operations, closed.branches, real
+        )
+    words = {"cycles": cycles.usual, "target": TARGETS[target], "cases": cases(arm.chain, real, seed)}
     fill = words_of(arm, chain, real, task, kernels, starts=starts, closed=closed) | words
     for name in PLAIN:
         write_text(folder / name, source(name))
     for name in WRITTEN:
         write_text(folder / name, rendered(name, fill))
-    total = sum((kernel.operations for kernel in kernels), Counter())
+    total = sum((kernel.operations for kernel in kernels.values()), Counter())
     cost = measured(folder) or estimated(total, real)
     return Export(
         folder=folder,
@@ -116,9 +104,8 @@ def export_c(
         task=task,
         precision=real,
         starts=starts,
-        operations=one,
-        cycles=mean,
-        cycles_most=most,
+        operations=kernels["step" if closed is None else "branches"].operations,
+        cycles=cycles,
         cost=cost,
         fingerprint=fingerprint(arm.chain),
     )
@@ -138,33 +125,3 @@ def _closed_form(arm: Arm, task: Task, method: str) -> "ClosedForm | None":
         if method == "closed-form":
             raise
         return None
-
-
-def _kernel(
-    function: "Function", name: str, inputs: Sequence[str], outputs: Sequence[str], real: Precision
-) -> StraightLine:
-    return straight_line(function, name, inputs, outputs, real)
-
-
-def _error(chain: SerialChain, task: Task) -> "Function":
-    """Distance and angle to the goal alone, of the residual's three results."""
-    return _part(symbolic.residual(chain, task), "error", 2)
-
-
-def _part(function: "Function", name: str, output: int) -> "Function":
-    """A function that gives one of the results only, so that nothing else is computed."""
-    import casadi as ca
-
-    symbols = function.sx_in()
-    return ca.Function(name, symbols, [function.call(symbols)[output]])
-
-
-def _representable(chain: SerialChain, real: Precision) -> SerialChain:
-    """The chain with its limits rounded inwards to numbers of this precision."""
-    if real.bytes == 8:
-        return chain
-    limits = chain.limits.astype(np.float32)
-    low, high = limits.T
-    low = np.where(low < chain.limits[:, 0], np.nextafter(low, np.float32(np.inf)), low)
-    high = np.where(high > chain.limits[:, 1], np.nextafter(high, np.float32(-np.inf)), high)
-    return replace(chain, limits=np.stack([low, high], axis=1).astype(float))

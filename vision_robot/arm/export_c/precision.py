@@ -21,6 +21,9 @@ class Precision:
     reached_m: float
     reached_rad: float
     """Within these of the goal an answer counts as reached."""
+    fine_m: float
+    fine_rad: float
+    """Until these the search goes on; near where the arm is singular it may stay above them."""
 
     def literal(self, value: float) -> str:
         """`value` as a constant of this type, which reads back as the same number."""
@@ -34,8 +37,8 @@ class Precision:
         return name + self.suffix
 
 
-SINGLE = Precision("single", "float", "f", 4, 1e-5, 1e-4)
-DOUBLE = Precision("double", "double", "", 8, 1e-9, 1e-9)
+SINGLE = Precision("single", "float", "f", 4, 1e-5, 1e-4, 5e-7, 2e-6)
+DOUBLE = Precision("double", "double", "", 8, 1e-6, 1e-5, 1e-11, 1e-11)
 PRECISIONS = {one.name: one for one in (SINGLE, DOUBLE)}
 
 

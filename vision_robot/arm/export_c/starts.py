@@ -5,17 +5,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from vision_robot.arm import symbolic
+from vision_robot.arm.export_c.precision import DOUBLE, Precision
 from vision_robot.arm.task import Task
 from vision_robot.arm.vectorised import Vectorised
 from vision_robot.geometry import SerialChain
 from vision_robot.types import Array, Bool, Float, Int
 
-__all__ = ["PATIENCE", "STEPS", "Starts", "covering_starts", "golden_steps", "spread_points"]
+__all__ = ["LAST_PATIENCE", "PATIENCE", "Starts", "covering_starts", "golden_steps", "spread_points"]
 
-STEPS = 40
-"""Most steps from one start."""
 PATIENCE = 8
-"""Steps in which the error has to halve."""
+"""Steps in which the error has to halve; five times as many are done at most from one start."""
+LAST_PATIENCE = 24
+"""The same, for starts beyond the table."""
 CANDIDATES = 64
 TURN = 2**32
 
@@ -38,16 +39,15 @@ def covering_starts(
     chain: SerialChain,
     task: Task,
     *,
-    within: tuple[float, float] = (1e-6, 1e-6),
+    real: Precision = DOUBLE,
     goals: int = 1000,
     seed: int = 0,
 ) -> Starts:
     """Choose starts greedily until every one of `goals` goals is reached, then try them on as many others.
 
-    A goal is reached `within` a distance [m] and angle [rad]. The descent is the one of vr_ik.c, so that
-    what holds here holds there.
+    The descent is the one of vr_ik.c with the tolerances of `real`, so that what holds here holds there.
     """
-    descent = _Descent(Vectorised(symbolic.lm_step(chain, task)), symbolic.length_scale(chain), *within)
+    descent = _Descent(Vectorised(symbolic.lm_step(chain, task)), symbolic.length_scale(chain), real)
     rng = np.random.default_rng(seed)
     candidates = np.vstack([chain.limits.mean(axis=1), spread_points(chain, CANDIDATES - 1)])
     drawn = _goals(chain, goals, rng)
@@ -97,8 +97,7 @@ class _Descent:
 
     step: Vectorised
     scale: float
-    reached_m: float
-    reached_rad: float
+    real: Precision
 
     def from_each(
         self, starts: Float[Array, "k n"], goals: Float[Array, "12 g"]
@@ -116,11 +115,11 @@ class _Descent:
         reached, calls = np.zeros(count, dtype=bool), np.ones(count, dtype=int)
         at, before = np.arange(count), np.full(count, np.inf)
         here, error = self.step(q, goals)
-        for k in range(STEPS):
+        for k in range(5 * PATIENCE):
             following, next_error = self.step(here, goals[:, at])
             calls[at] += 1
             next_cost = self.cost(next_error)
-            done = self.within(error) & ~(next_cost < 0.25 * self.cost(error))
+            done = self.within(error) & ~(self.coarse(error) & (next_cost < 0.8 * self.cost(error)))
             stuck = np.zeros(len(at), dtype=bool)
             if k % PATIENCE == PATIENCE - 1:
                 stuck = ~done & ~(next_cost < 0.5 * before) & ~self.within(next_error)
@@ -135,7 +134,11 @@ class _Descent:
 
     def within(self, error: Float[Array, "2 p"]) -> Bool[Array, "p"]:
         """Near enough."""
-        return (error[0] <= self.reached_m) & (error[1] <= self.reached_rad)
+        return (error[0] <= self.real.reached_m) & (error[1] <= self.real.reached_rad)
+
+    def coarse(self, error: Float[Array, "2 p"]) -> Bool[Array, "p"]:
+        """Worth another step."""
+        return ~((error[0] <= self.real.fine_m) & (error[1] <= self.real.fine_rad))
 
     def cost(self, error: Float[Array, "2 p"]) -> Float[Array, "p"]:
         """Squared distance, angles times the length scale."""

@@ -1,6 +1,6 @@
 """What the generated files say: numbers and sentences for their templates."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +10,7 @@ import vision_robot
 from vision_robot.arm import symbolic
 from vision_robot.arm.export_c.fingerprint import fingerprint
 from vision_robot.arm.export_c.precision import Precision
-from vision_robot.arm.export_c.starts import PATIENCE, STEPS, Starts, golden_steps
+from vision_robot.arm.export_c.starts import LAST_PATIENCE, PATIENCE, Starts, golden_steps
 from vision_robot.arm.export_c.straight_line import StraightLine
 from vision_robot.arm.model import Arm
 from vision_robot.arm.task import Task
@@ -19,10 +19,12 @@ from vision_robot.geometry import SerialChain
 if TYPE_CHECKING:
     from vision_robot.arm.closed_form import ClosedForm
 
-__all__ = ["SPREAD", "cases", "polish_steps", "rendered", "source", "words_of"]
+__all__ = ["SPREAD", "cases", "rendered", "source", "words_of"]
 
-SPREAD = 60
+SPREAD = 150
 """Starts beyond the table before a goal counts as out of reach."""
+POLISH = 6
+"""Steps at most on a branch of the closed form that just misses the goal."""
 CASES = 32
 """Of the self-test."""
 
@@ -49,17 +51,12 @@ def rendered(name: str, fill: Mapping[str, Any]) -> str:
     return engine.from_string(source(f"{name}.j2")).render(fill)
 
 
-def polish_steps(closed: "ClosedForm | None") -> int:
-    """Steps that an answer of the closed form needs: none where the arm is exactly of its kind."""
-    return 0 if closed is None or closed.exact else 3
-
-
 def words_of(
     arm: Arm,
     chain: SerialChain,
     real: Precision,
     task: Task,
-    kernels: Sequence[StraightLine],
+    kernels: Mapping[str, StraightLine],
     *,
     starts: Starts | None,
     closed: "ClosedForm | None",
@@ -67,7 +64,7 @@ def words_of(
     """What the templates ask for about the arm; `chain` has its limits in the target's precision."""
     method = "damped steps from several starts" if closed is None else f"closed form, {closed.structure}"
     numbers = [real.literal(value) for value in chain.limits.ravel()]
-    used = {name for kernel in kernels for name in kernel.functions} | {"sqrt", "sin", "cos"}
+    used = {name for kernel in kernels.values() for name in kernel.functions} | {"sqrt", "sin", "cos"}
     return {
         "arm": arm,
         "version": vision_robot.__version__,
@@ -76,7 +73,8 @@ def words_of(
         "task_words": TASKS[task],
         "numeric": closed is None,
         "structure": "" if closed is None else closed.structure,
-        "polish": polish_steps(closed),
+        "polish": POLISH,
+        "near": 1e-3,
         "branches": 0 if closed is None else closed.branches,
         "method_words": method,
         "choice_words": "from the nearest start that leads there, `now` first"
@@ -92,14 +90,15 @@ def words_of(
         "lower": numbers[0::2],
         "upper": numbers[1::2],
         "slides": [int(slides) for slides in chain.slides],
+        "same": 1e-3 if real.suffix else 1e-5,
         "slack": 1e-6 if real.suffix else 1e-9,
-        "steps": STEPS,
         "patience": PATIENCE,
+        "last_patience": LAST_PATIENCE,
         "spread": SPREAD,
         "starts": [] if starts is None else [[real.literal(x) for x in q] for q in starts.q],
         "goals": 0 if starts is None else starts.goals,
         "golden": [f"{step}u" for step in golden_steps(len(chain))],
-        "kernels": [kernel.code for kernel in kernels],
+        "kernels": [kernel.code for kernel in kernels.values()],
     }
 
 

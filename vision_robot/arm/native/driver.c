@@ -146,8 +146,8 @@ void solve_closed(long count, const double *goals, double *q_out, double *errors
 }
 
 /* The best branch of every goal: inside the limits, within `tolerance` of the goal, and nearest to
-   `near` (one row, or one a goal where `stride` is JOINTS) by the sum of weighted squares, whole periods
-   left out. Where none is right, branch -1 and the q that misses least. */
+   `near` (one row, or one a goal where `stride` is JOINTS) by the sum of weighted squares, after turning
+   each joint that has a period by whole ones towards it. Where none is right, branch -1 and the q that misses least. */
 void choose_closed(long count, const double *goals, const double *limits, const double *near, long stride,
                    const double *joint_weights, const double *periods, const double *tolerance, double slack, double scale,
                    double *q_out, double *errors_out, int *branch_out)
@@ -171,8 +171,13 @@ void choose_closed(long count, const double *goals, const double *limits, const 
                 vd x = q[b * JOINTS + j], low = V(limits[2 * j]), high = V(limits[2 * j + 1]);
                 right &= (x >= low - slack) & (x <= high + slack);
                 at[j] = v_fmin(v_fmax(x, low), high);
+                if (periods[j] > 0) {
+                    /* By whole turns as near as the limits let it come. */
+                    vd least = -v_floor((at[j] - low) / periods[j]), most = v_floor((high - at[j]) / periods[j]);
+                    vd turns = v_fmin(v_fmax(v_round((from[j] - at[j]) / periods[j]), least), most);
+                    at[j] += periods[j] * turns;
+                }
                 vd off = at[j] - from[j];
-                if (periods[j] > 0) off -= periods[j] * v_round(off / periods[j]);
                 cost += off * off * joint_weights[j];
             }
             /* What is not right comes after everything that is, by how far it misses. */

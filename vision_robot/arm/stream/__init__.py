@@ -5,6 +5,7 @@ from vision_robot.arm.stream.joint_table import JointTable
 from vision_robot.arm.stream.link import Link, Port
 from vision_robot.arm.stream.messages import VERSION, Answer, Kind, Status, Welcome
 from vision_robot.arm.stream.playback import play
+from vision_robot.arm.stream.pose_table import PoseTable
 from vision_robot.arm.stream.serial_port import SerialPort
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "Kind",
     "Link",
     "Port",
+    "PoseTable",
     "SerialPort",
     "Status",
     "Welcome",

@@ -98,6 +98,8 @@ class JointTable:
         picked = [(header.index(TIME), 1.0)]
         for name, slides in zip(chain.joint_names, chain.slides, strict=True):
             picked.append(_column(header, name, SCALES[bool(slides)], source))
+        if len(rows) < 2:
+            raise BadTable(source, "it has no rows")
         values = np.empty((len(rows) - 1, len(picked)))
         for i, row in enumerate(rows[1:]):
             if len(row) != len(header):

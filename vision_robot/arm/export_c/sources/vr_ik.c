@@ -29,6 +29,9 @@ void vr_pose_from_rotvec(const vr_real position[3], const vr_real rotvec[3], vr_
     base_from_tool[11] = position[2];
 }
 
+/* Worth another step? Answers are finer than the tolerance wherever the arm allows. */
+static int coarse(const vr_real error[2]) { return !(error[0] <= VR_FINE_M && error[1] <= VR_FINE_RAD); }
+
 static int within(const vr_real error[2]) { return error[0] <= VR_TOLERANCE_M && error[1] <= VR_TOLERANCE_RAD; }
 
 /* Take whole turns off turning joints where that brings them nearer to `now` and not past a limit. */
@@ -85,20 +88,18 @@ static vr_real apart(const vr_real *a, const vr_real *b)
     return sum;
 }
 
-#if VR_POLISH
-
-/* The arm's axes are a little off those that the closed form is exact for: finish by steps on the arm as it is. */
-static void polish(const vr_real goal[12], vr_real q[VR_JOINTS])
+/* Finish a branch that all but reaches the goal: rounding is felt most where branches meet, and the arm's axes may be a
+ * little off those that the closed form is exact for. */
+static void polish(const vr_real goal[12], vr_real q[VR_JOINTS], vr_real error[2])
 {
-    vr_real next[VR_JOINTS], error[2];
+    vr_real next[VR_JOINTS];
     int step;
-    for (step = 0; step < VR_POLISH; step++) {
+    for (step = 0; step < VR_POLISH && coarse(error) && error[0] <= VR_NEAR && error[1] <= VR_NEAR; step++) {
         vr_kernel_step(q, goal, next, error);
         copy(next, q);
+        vr_kernel_error(q, goal, error);
     }
 }
-
-#endif
 
 int vr_branches(const vr_real base_from_tool[12], vr_real q[VR_BRANCHES][VR_JOINTS])
 {
@@ -113,13 +114,12 @@ int vr_branches(const vr_real base_from_tool[12], vr_real q[VR_BRANCHES][VR_JOIN
         }
         if (!good)
             continue;
-#if VR_POLISH
-        polish(base_from_tool, q[found]);
-#endif
+        vr_kernel_error(q[found], base_from_tool, error);
+        polish(base_from_tool, q[found], error);
+        good = within(error);
         for (i = 0; i < found && good; i++) /* branches meet where the arm is singular */
             good = apart(q[i], q[found]) > VR_SAME;
-        vr_kernel_error(q[found], base_from_tool, error);
-        found += good && within(error);
+        found += good;
     }
     return found;
 }
@@ -156,22 +156,22 @@ static vr_real cost(const vr_real error[2])
     return error[0] * error[0] + angle * angle;
 }
 
-/* Descend from q; ends at the goal, or where it goes no farther. */
-static int descend(const vr_real goal[12], vr_real q[VR_JOINTS], vr_real error[2])
+/* Descend from q; ends at the goal, or where the error has not halved in `patience` steps. */
+static int descend(const vr_real goal[12], vr_real q[VR_JOINTS], vr_real error[2], int patience)
 {
     vr_real next[VR_JOINTS], next_error[2], before = VR_INFINITY;
     int step;
     vr_kernel_step(q, goal, next, error);
-    for (step = 0; step < VR_STEPS; step++) {
+    for (step = 0; step < 5 * patience; step++) {
         vr_real here[VR_JOINTS];
         copy(next, here);
         vr_kernel_step(here, goal, next, next_error);
-        if (within(error) && !(cost(next_error) < VR_REAL(0.25) * cost(error)))
+        if (within(error) && !(coarse(error) && cost(next_error) < VR_REAL(0.8) * cost(error)))
             return 1; /* as near as rounding allows */
         copy(here, q);
         error[0] = next_error[0];
         error[1] = next_error[1];
-        if (step % VR_PATIENCE == VR_PATIENCE - 1) {
+        if (step % patience == patience - 1) {
             if (!(cost(error) < VR_REAL(0.5) * before) && !within(error))
                 return 0;
             before = cost(error);
@@ -199,7 +199,8 @@ int vr_solve(const vr_real base_from_tool[12], const vr_real now[VR_JOINTS], vr_
             copy(vr_starts[start - 1], trial);
         else
             spread((uint32_t)(start - VR_STARTS), trial);
-        reached = descend(base_from_tool, trial, trial_error);
+        /* A goal that is still not reached lies at the border of what can be: few starts lead there, and slowly. */
+        reached = descend(base_from_tool, trial, trial_error, start <= VR_STARTS ? VR_PATIENCE : VR_LAST_PATIENCE);
         if (start == 0 || reached || cost(trial_error) < cost(error)) {
             copy(trial, q);
             error[0] = trial_error[0];
