@@ -291,9 +291,9 @@ class BadArm(BadInput):
 class BadGoal(BadInput):
     """A pose can be no goal of an arm."""
 
-    def __init__(self, row: int, why: str, where: str = "goal"):
+    def __init__(self, row: int, why: str, where: str = ""):
         self.row, self.why, self.where = row, why, where
-        super().__init__(f"{where} {row} cannot be used: {why}")
+        super().__init__(f"{where or f'goal {row}'} cannot be used: {why}")
 
 
 class BadPath(BadInput):

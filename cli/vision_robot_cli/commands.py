@@ -34,13 +34,21 @@ EXTRINSICS: dict[str, Command] = {
 }
 
 IK: dict[str, Command] = {
+    "solve": Command(
+        "vision_robot_cli.ik_solve:ik_solve",
+        "Joint values for poses of the tool, from a file or options; or why none reach them.",
+    ),
+    "check": Command(
+        "vision_robot_cli.ik_check:ik_check",
+        "An arm's model: its kind, whether its kinematics hold together, a map of where it reaches.",
+    ),
     "export": Command(
         "vision_robot_cli.ik_export:ik_export",
         "C for a microcontroller: forward and inverse kinematics, and the receiver of joint commands.",
     ),
     "stream": Command(
         "vision_robot_cli.ik_stream:ik_stream",
-        "Play a table of joint values to a microcontroller over a serial line.",
+        "Send a table of joint values, or poses to be solved there, to a microcontroller.",
     ),
 }
 
@@ -67,7 +75,7 @@ COMMANDS: dict[str, Command | Group] = {
     ),
     "ik": Group(
         IK,
-        "The arm: poses to joints, and C for its microcontroller.",
+        "An arm in an MJCF or URDF file: from poses to joints, and C for its microcontroller.",
     ),
 }
 

@@ -213,7 +213,6 @@ def _row(name: str, unit: str, row: tuple[float, float, float], error: float | N
 def write_report(verdict: HandEyeVerdict, given: HandEyeInput, path: Path, seed: int) -> None:
     """Write --report."""
     from vision_robot.report.hand_eye import hand_eye_page
-
     from vision_robot.report.page import write_page
 
     page = hand_eye_page(

@@ -6,7 +6,7 @@ from vision_robot.errors import BadGoal
 from vision_robot.geometry import SE3, SerialChain
 from vision_robot.types import Array, Bool, Float
 
-__all__ = ["goal_rows", "poses_of_rows", "rotation_of_quaternion"]
+__all__ = ["goal_rows", "poses_of_rows"]
 
 OFF_UNIT = 1e-3
 """Rows of a rotation may be off unit length and right angles by this: rounding in a file, which is mended."""
@@ -53,20 +53,6 @@ def poses_of_rows(rows: Float[Array, "goals 12"]) -> SE3:
     """The poses of rows of twelve numbers."""
     matrix = rows.reshape(-1, 3, 4)
     return SE3(matrix[..., :3], matrix[..., 3])
-
-
-def rotation_of_quaternion(wxyz: Float[Array, "goals 4"]) -> Float[Array, "goals 3 3"]:
-    """Rotation matrices of quaternions (w, x, y, z). Raises BadGoal where one is not of unit length."""
-    length = np.linalg.norm(wxyz, axis=1)
-    for row in np.flatnonzero(~(np.abs(length - 1) < OFF_UNIT))[:1]:
-        raise BadGoal(int(row), f"its quaternion has length {length[row]:.4g}, not 1")
-    w, x, y, z = (wxyz / length[:, None]).T
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0)
 
 
 def _refuse(bad: Bool[Array, "goals"], why: str) -> None:

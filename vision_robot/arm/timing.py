@@ -9,11 +9,11 @@ from vision_robot.types import Array, Float
 
 __all__ = ["Trajectory", "timed"]
 
-GRID = 201
+GRID = 401
 """Points of the path at which limits are looked at."""
 
-MARGIN = 0.96
-"""Share of the accelerations that is used there, so that they hold between the points too."""
+ROUNDS = 5
+"""Times that what passes a limit between the points is slowed; what is left then slows the whole."""
 
 
 @dataclass(frozen=True)
@@ -54,31 +54,71 @@ def timed(
     for name, limit in (("velocity", velocity), ("acceleration", acceleration)):
         if limit.shape != q.shape[1:] or not (np.isfinite(limit) & (limit > 0)).all():
             raise BadParameter(f"{name} limits", limit.tolist(), f"{q.shape[1]} positive numbers")
-    acceleration = MARGIN * acceleration
     s, path, first, second = _smooth(q)
     if s is None:
         still = np.zeros((1, q.shape[1]))
         return Trajectory(joint_names, np.zeros(1), q[:1], still, still)
-    step = s[1] - s[0]
+    step = float(s[1] - s[0])
     fastest = _square_limits(first, velocity)
-    braking = np.zeros(len(s))
-    for k in range(len(s) - 2, -1, -1):
-        braking[k] = _most(first[k], second[k], acceleration, fastest[k], braking[k + 1], step)
-    square, push = np.zeros(len(s)), np.zeros(len(s))
-    for k in range(len(s) - 1):
-        _, high = _pushes(first[k], second[k], acceleration, square[k])
+    room = np.ones(len(s))
+    motion = _fastest(joint_names, step, (path, first, second), fastest, acceleration * room[:, None])
+    fast, hard = _overshoot(motion, velocity, acceleration)
+    for _ in range(ROUNDS):
+        # Speeds that hold at the points may still be too much between them: there less is allowed.
+        fastest, room = fastest / _both_ends(fast) ** 2, room / _both_ends(hard)
+        motion = _fastest(joint_names, step, (path, first, second), fastest, acceleration * room[:, None])
+        fast, hard = _overshoot(motion, velocity, acceleration)
+    slower = max(1.0, float(fast.max()), float(np.sqrt(hard.max())))
+    return Trajectory(
+        joint_names,
+        motion.time_s * slower,
+        motion.q,
+        motion.velocity / slower,
+        motion.acceleration / slower**2,
+    )
+
+
+def _fastest(
+    joint_names: tuple[str, ...],
+    step: float,
+    curve: tuple[Array, Array, Array],
+    fastest: Float[Array, "grid"],
+    acceleration: Float[Array, "grid n"],
+) -> Trajectory:
+    """Along a curve (values, first and second derivative), with limits at the points of the grid."""
+    path, first, second = curve
+    count = len(path)
+    braking = np.zeros(count)
+    for k in range(count - 2, -1, -1):
+        braking[k] = _most(first[k], second[k], acceleration[k], fastest[k], braking[k + 1], step)
+    square, push = np.zeros(count), np.zeros(count)
+    for k in range(count - 1):
+        _, high = _pushes(first[k], second[k], acceleration[k], square[k])
         push[k] = min(high, (braking[k + 1] - square[k]) / (2 * step))
         square[k + 1] = max(square[k] + 2 * step * push[k], 0.0)
     push[-1] = push[-2]
     speed = np.sqrt(square)
     times = np.concatenate([[0.0], np.cumsum(2 * step / np.maximum(speed[1:] + speed[:-1], 1e-12))])
-    return Trajectory(
-        joint_names,
-        times,
-        path,
-        first * speed[:, None],
-        first * push[:, None] + second * square[:, None],
-    )
+    pushes = first * push[:, None] + second * square[:, None]
+    return Trajectory(joint_names, times, path, first * speed[:, None], pushes)
+
+
+def _overshoot(
+    motion: Trajectory, velocity: Float[Array, "n"], acceleration: Float[Array, "n"]
+) -> tuple[Float[Array, "cells"], Float[Array, "cells"]]:
+    """By what factor, one or more, velocity and acceleration pass their limits between points of the grid."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    curve = CubicHermiteSpline(motion.time_s, motion.q, motion.velocity)
+    inside = motion.time_s[:-1, None] + np.diff(motion.time_s)[:, None] * np.array([1e-6, 0.5, 1 - 1e-6])
+    fast = (np.abs(curve(inside, 1)) / velocity).max(axis=(1, 2))
+    hard = (np.abs(curve(inside, 2)) / acceleration).max(axis=(1, 2))
+    return np.maximum(fast, 1.0), np.maximum(hard, 1.0)
+
+
+def _both_ends(cells: Float[Array, "cells"]) -> Float[Array, "grid"]:
+    """What holds for cells, for the points at their ends: the larger of both sides."""
+    return np.maximum(np.concatenate([cells, [1.0]]), np.concatenate([[1.0], cells]))
 
 
 def _smooth(q: Float[Array, "points n"]) -> tuple[Array | None, Array, Array, Array]:
