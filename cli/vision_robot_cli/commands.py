@@ -61,6 +61,7 @@ IK: dict[str, Command] = {
     "stream": Command(
         "vision_robot_cli.ik_stream:ik_stream",
         "Play a table of joint values to a microcontroller over a serial line.",
+        "Send a table of joint values, or poses to be solved there, to a microcontroller.",
     ),
 }
 
@@ -111,6 +112,7 @@ COMMANDS: dict[str, Command | Group] = {
     "ik": Group(
         IK,
         "The arm: poses to joints, and C for its microcontroller.",
+        "An arm in an MJCF or URDF file: from poses to joints, and C for its microcontroller.",
     ),
 }
 

@@ -1,29 +1,37 @@
-"""`vr ik stream`: a table of joint values to the arm's microcontroller, each row in its time."""
+"""`vr ik stream`: joint values, or poses, to the arm's microcontroller, each row in its time."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from vision_robot_cli.arm_choice import ArmSource, Base, Limit, Tool, Wrist, arm_of
+from vision_robot_cli.arm_options import ArmBase, ArmFile, ArmLimits, ArmTool
 from vision_robot_cli.options import Json
-
-if TYPE_CHECKING:
-    from vision_robot.arm import Arm
-    from vision_robot.arm.stream import JointTable
 
 __all__ = ["ik_stream"]
 
 
 def ik_stream(
-    arm: ArmSource,
     table: Annotated[
         Path,
-        typer.Argument(help="CSV: time_s and a column a joint, its unit in its name: d1_mm, theta2_deg."),
+        typer.Argument(
+            help="CSV: time_s and a column a joint, its unit in its name (d1_mm, theta2_deg); with --poses "
+            "any goals that vr ik solve reads."
+        ),
     ],
     port: Annotated[
         str | None,
         typer.Option("--port", help="Serial port: /dev/ttyACM0, COM3. Without it the table is only checked."),
+    ] = None,
+    poses: Annotated[
+        bool,
+        typer.Option("--poses", help="Send poses of the tool; the microcontroller solves for the joints."),
+    ] = False,
+    period: Annotated[
+        float, typer.Option(help="Seconds from pose to pose where the file has no column time_s.")
+    ] = 1.0,
+    station: Annotated[
+        Path | None, typer.Option(help="Pose file of base_from_station; --poses are then on the station.")
     ] = None,
     baud: Annotated[int, typer.Option(help="Bits per second.")] = 115200,
     rate: Annotated[
@@ -32,83 +40,51 @@ def ik_stream(
     timeout: Annotated[float, typer.Option(help="Seconds to wait for an answer before sending again.")] = 0.1,
     tries: Annotated[int, typer.Option(help="How often a command is sent before giving up.")] = 5,
     silence: Annotated[
-        float, typer.Option(help="Seconds without a command after which the arm stops by itself; 0: never.")
-    ] = 1.0,
+        float | None,
+        typer.Option(
+            help="Seconds without a command after which the microcontroller stops the arm by itself; 0: never. "
+            "Else a second more than the longest step of the table."
+        ),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option("-o", "--out", help="CSV of the joints the microcontroller answered.")
     ] = None,
-    tool: Tool = None,
-    wrist: Wrist = None,
-    base: Base = None,
-    limit: Limit = None,
+    arm: ArmFile = "column",
+    tool: ArmTool = None,
+    base: ArmBase = None,
+    limit: ArmLimits = None,
     json: Json = False,
 ) -> None:
-    """Play a joint table to a microcontroller that runs the code of `vr ik export`.
+    """Play a table to a microcontroller that runs the code of `vr ik export`.
 
-    The table is checked against the arm's limits before anything moves, and the arm is told to stop when
+    Joints are checked against the arm's limits before anything moves, and the arm is told to stop when
     anything goes wrong or Ctrl-C is pressed. The microcontroller must hold the same arm: fingerprints are
     compared.
 
-    Example: vr ik stream column joints.csv --port /dev/ttyACM0 --rate 0.5
+    Examples: vr ik stream joints.csv --port /dev/ttyACM0 --rate 0.5; vr ik stream p.csv --poses --port COM3
     """
-    from vision_robot.arm.stream import JointTable
     from vision_robot.errors import BadParameter
+    from vision_robot_cli import stream_table
+    from vision_robot_cli.arm_options import arm_of
     from vision_robot_cli.output import emit_json
 
-    robot = arm_of(arm, tool, wrist, base, limit)
-    if rate <= 0:
-        raise BadParameter("--rate", rate, "above 0")
-    joints = JointTable.read(table, robot.chain)
-    joints.check(robot.chain, table)
-    result: dict[str, object] = {"rows": len(joints), "duration_s": float(joints.time_s[-1]) / rate}
+    for option, value in (("--rate", rate), ("--period", period)):
+        if not value > 0:
+            raise BadParameter(option, value, "above 0")
+    if station and not poses:
+        raise BadParameter("--station", str(station), "given together with --poses")
+    robot = arm_of(arm, tool, base, limit)
+    rows = stream_table.poses(table, station, period) if poses else stream_table.joints(table, robot)
+    told: dict[str, object] = {"rows": len(rows), "duration_s": float(rows.time_s[-1]) / rate, "port": port}
     if port is not None:
-        result |= played(robot, joints, port, baud, rate, (timeout, tries, silence), out)
-    result["port"] = port
+        quiet = stream_table.longest_step_s(rows) / rate + 1 if silence is None else silence
+        wait = {"timeout_s": timeout, "tries": tries, "silence_s": quiet if quiet <= 65 else 0.0}
+        told |= stream_table.played(robot, rows, port, baud, rate, wait, out)
     if json:
-        emit_json("ik.stream", result)
+        emit_json("ik.stream", told)
     elif port is None:
-        print(f"{table}: {len(joints)} rows over {result['duration_s']:.3f} s, all inside the limits")
+        kind = "poses" if poses else "rows, all inside the limits,"
+        print(f"{table}: {len(rows)} {kind} over {told['duration_s']:.3f} s")
     else:
-        late = f"{result['latency_p50_ms']:.1f} ms (median) to {result['latency_max_ms']:.1f} ms"
-        done = f"{len(joints)} commands carried out, {result['resent']} sent again"
-        print(f"{port}: {done}, answered {late} after their time")
-
-
-def played(
-    robot: "Arm",
-    joints: "JointTable",
-    port: str,
-    baud: int,
-    rate: float,
-    patience: tuple[float, int, float],
-    out: Path | None,
-) -> dict[str, object]:
-    """Send the table; what came of it, as the keys of `--json`."""
-    import numpy as np
-
-    from vision_robot.arm.export_c import fingerprint
-    from vision_robot.arm.stream import JointTable, Link, SerialPort, play
-    from vision_robot.files import check_place
-    from vision_robot_cli.output import progress
-
-    if out is not None:
-        check_place(out)
-    timeout_s, tries, silence_s = patience
-    with SerialPort(port, baud) as line:
-        link = Link(
-            line, len(robot), fingerprint(robot.chain), timeout_s=timeout_s, tries=tries, silence_s=silence_s
-        )
-        link.open()
-        answers = [*progress(play(link, joints, rate=rate), "streaming", total=len(joints))]
-        damaged = link.damaged
-    if out is not None:
-        JointTable.of(robot.chain, joints.time_s, np.array([answer.q for _, answer in answers])).write(out)
-    late_ms = 1e3 * np.array([late for late, _ in answers])
-    return {
-        "carried_out": len(answers),
-        "resent": link.resent,
-        "damaged": damaged,
-        "latency_p50_ms": float(np.median(late_ms)),
-        "latency_max_ms": float(late_ms.max()),
-        "out": None if out is None else str(out),
-    }
+        late = f"{told['latency_p50_ms']:.1f} ms (median) to {told['latency_max_ms']:.1f} ms"
+        print(f"{port}: {len(rows)} commands carried out, {told['resent']} sent again, answered {late} late")
