@@ -18,7 +18,7 @@ SHORTEST_S, GRIP_S = 0.4, 1.2
 """Least time of a move; time in which the fingers close and have hold."""
 SQUEEZE_M = 0.006
 """The servos are told to close so much further than the thing is wide."""
-STEPS = 60
+STEPS = 40
 STARTS = 24
 NEAR_M = 5e-4
 NUDGE = 1e-5
@@ -84,21 +84,18 @@ def joints_at(
 ) -> Float[Array, "n"]:
     """Joint values that bring the tool there, pointing down, its x along `yaw_rad` in {S} or against it.
 
-    Damped Gauss-Newton on the cell's own arm from several starts; the solution nearest to `near` is
-    taken. Raises NoConvergence where the arm does not reach.
+    Damped Gauss-Newton on the cell's own arm, from `near` and, where that leads nowhere, from anywhere.
+    Raises NoConvergence where the arm does not reach.
     """
     rng = np.random.default_rng(0)
     low, high = cell.joint_limits.T
-    found = []
     for i in range(STARTS):
         start = near if i == 0 else low + rng.random(len(low)) * (high - low)
-        for yaw in (yaw_rad, yaw_rad + np.pi):
-            q = _descend(cell, place, yaw, start)
-            if q is not None:
-                found.append(q)
-    if not found:
-        raise NoConvergence(f"the arm does not reach {np.round(place, 3).tolist()} m in the station frame")
-    return min(found, key=lambda q: float(np.abs(q - near).max()))
+        found = [_descend(cell, place, yaw, start) for yaw in (yaw_rad, yaw_rad + np.pi)]
+        reached = [q for q in found if q is not None]
+        if reached:
+            return min(reached, key=lambda q: float(np.abs(q - near).max()))
+    raise NoConvergence(f"the arm does not reach {np.round(place, 3).tolist()} m in the station frame")
 
 
 def _descend(

@@ -142,7 +142,7 @@ def test_masks_boxes_and_run_lengths_agree(made):
 
 
 def test_flow_leads_each_object_to_where_it_is_next(made):
-    """The mean flow over an object that is seen whole twice is the way of its centroid, to a fifth of a pixel."""
+    """The mean flow over an object that is seen whole twice is the way of its centroid, to 0.2 px."""
     data = open_dataset(made)
     checked = 0
     for i in range(len(data) - 1):

@@ -1,4 +1,4 @@
-"""Recipes: those that come along read, unknown words are refused by name, one extends another, the dial turns."""
+"""Recipes: those that come along read, unknown words are refused, one extends another, the dial turns."""
 
 from pathlib import Path
 

@@ -111,4 +111,4 @@ def test_a_recipe_that_cannot_be_made_names_itself(tmp_path):
     with pytest.raises(BadRecipe, match=r"recipe mine: .*pencil"):
         one(tmp_path, "[things.rod]\nshape='pencil'\nlength_mm=20\nwidth_mm=10\n")
     with pytest.raises(BadRecipe, match=r"recipe mine: camera.distortion"):
-        one(tmp_path, "[camera]\nlens='brown5'\n")
+        one(tmp_path, "[camera]\nlens='brown5'\ndistortion=[0, 0, 0, 0]\n")
