@@ -9,7 +9,7 @@ from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.gl import load_mujoco
 from vision_robot.types import Array, Float, Image, Int
 
-__all__ = ["Canvas"]
+__all__ = ["Canvas", "Region"]
 
 # mujoco's own classes, which carry no type information.
 MjModel: TypeAlias = Any
@@ -17,6 +17,9 @@ MjData: TypeAlias = Any
 MjvGLCamera: TypeAlias = Any
 MjrContext: TypeAlias = Any
 MjrRect: TypeAlias = Any
+
+Region: TypeAlias = tuple[int, int, int, int]
+"""A rectangle of a picture: first column, first row, columns, rows."""
 
 
 class Canvas:
@@ -43,25 +46,40 @@ class Canvas:
         self._shown = np.array(self._options.geomgroup)
         self._buffer("colours")
 
-    def colours(self, face: Camera, world_from_cam: SE3) -> Image:
-        """Red-green-blue picture, its lowest row first as OpenGL has it."""
-        rect = self._draw("colours", face, world_from_cam, ())
+    def colours(
+        self,
+        face: Camera,
+        world_from_cam: SE3,
+        *,
+        hidden_groups: tuple[int, ...] = (),
+        region: Region | None = None,
+    ) -> Image:
+        """Red-green-blue picture, or the `region` of it, its lowest row first as OpenGL has it."""
+        name = "colours" if region is None else "colours of a region"
+        rect = self._draw(name, face, world_from_cam, hidden_groups, region)
         rgb = np.empty((rect.height, rect.width, 3), dtype=np.uint8)
-        self._mujoco.mjr_readPixels(rgb, None, rect, self._buffers["colours"])
+        self._mujoco.mjr_readPixels(rgb, None, rect, self._buffers[name])
         return rgb
 
     def numbers(
-        self, face: Camera, world_from_cam: SE3, *, hidden_groups: tuple[int, ...] = (), depth: bool = False
+        self,
+        face: Camera,
+        world_from_cam: SE3,
+        *,
+        hidden_groups: tuple[int, ...] = (),
+        depth: bool = False,
+        region: Region | None = None,
     ) -> tuple[Int[Array, "rows columns"], Float[Array, "rows columns"] | None]:
         """The scene's numbers at the pixels' centres and, if asked for, depth [m], upper row first.
 
         0 is nothing, `objects` tells about the others; depth is infinite where nothing is hit. Geoms
         of `hidden_groups` are left out.
         """
-        rect = self._draw("numbers", face, world_from_cam, hidden_groups)
+        name = "numbers" if region is None else "numbers of a region"
+        rect = self._draw(name, face, world_from_cam, hidden_groups, region)
         rgb = np.empty((rect.height, rect.width, 3), dtype=np.uint8)
         raw = np.empty((rect.height, rect.width), dtype=np.float32) if depth else None
-        self._mujoco.mjr_readPixels(rgb, raw, rect, self._buffers["numbers"])
+        self._mujoco.mjr_readPixels(rgb, raw, rect, self._buffers[name])
         index = rgb[::-1, :, 0]
         if self._scene.ngeom > 254:
             parts = rgb[::-1].astype(np.int32)
@@ -94,8 +112,9 @@ class Canvas:
             mj, quality = self._mujoco, self._model.vis.quality
             before = int(quality.offsamples), int(quality.shadowsize)
             # What a buffer is like is read from the model when it is made.
-            quality.offsamples = self._multisamples if name == "colours" else 0
-            if not (self._shadows and name == "colours"):
+            coded = name.startswith("numbers")
+            quality.offsamples = 0 if coded else self._multisamples
+            if coded or not self._shadows:
                 quality.shadowsize = 0
             buffer = mj.MjrContext(self._model, mj.mjtFontScale.mjFONTSCALE_100.value)
             quality.offsamples, quality.shadowsize = before
@@ -103,17 +122,27 @@ class Canvas:
             self._buffers[name] = buffer
         return self._buffers[name]
 
-    def _draw(self, name: str, face: Camera, world_from_cam: SE3, hidden_groups: tuple[int, ...]) -> MjrRect:
+    def _draw(
+        self,
+        name: str,
+        face: Camera,
+        world_from_cam: SE3,
+        hidden_groups: tuple[int, ...],
+        region: Region | None,
+    ) -> MjrRect:
+        """Draw the picture, or a region of it, into the buffer of that name; answers where it lies there."""
         if self._gl is None:
             raise BadParameter("renderer", "closed", "open: use it inside its with block")
         mj, scene = self._mujoco, self._scene
+        left, top, columns, rows = region or (0, 0, face.width, face.height)
         self._gl.make_current()
         buffer = self._buffer(name)
-        if face.width > buffer.offWidth or face.height > buffer.offHeight:
-            size = (max(face.width, buffer.offWidth), max(face.height, buffer.offHeight))
-            mj.mjr_resizeOffscreen(*size, buffer)
+        if region is not None:
+            mj.mjr_resizeOffscreen(columns, rows, buffer)  # what is larger would be drawn too
+        elif columns > buffer.offWidth or rows > buffer.offHeight:
+            mj.mjr_resizeOffscreen(max(columns, buffer.offWidth), max(rows, buffer.offHeight), buffer)
         mj.mjr_setBuffer(mj.mjtFramebuffer.mjFB_OFFSCREEN.value, buffer)
-        coded = name == "numbers"
+        coded = name.startswith("numbers")
         flags, flag = scene.flags, mj.mjtRndFlag
         flags[flag.mjRND_SEGMENT] = flags[flag.mjRND_IDCOLOR] = coded
         flags[flag.mjRND_SKYBOX] = not coded
@@ -128,9 +157,9 @@ class Canvas:
         for light in scene.lights[: scene.nlight]:
             if light.headlight:
                 light.pos, light.dir = world_from_cam.translation, world_from_cam.rotation[:, 2]
-        rect = mj.MjrRect(0, 0, face.width, face.height)
-        mj.mjr_render(rect, scene, buffer)
-        return rect
+        # The whole picture's view port, shifted: what lies outside the buffer is not drawn.
+        mj.mjr_render(mj.MjrRect(-left, top + rows - face.height, face.width, face.height), scene, buffer)
+        return mj.MjrRect(0, 0, columns, rows)
 
     def _metres(self, raw: Float[Array, "rows columns"]) -> Float[Array, "rows columns"]:
         eye = self._scene.camera[0]

@@ -13,6 +13,7 @@ from vision_robot.sim.cell_model import (
     ITEM,
     LABEL,
     LABEL_THICKNESS_M,
+    SKY_SHARE,
     build,
     direction,
     quaternion,
@@ -54,6 +55,7 @@ class Cell:
             for item in design.items
             if item.path is not None
         ]
+        self._lights = self._lights_now()
         self._drive = Drive.of(mj, self.model, ARM)
         labelled = design.arm is not None and design.arm.label is not None
         names = [item.name for item in design.items if item.tracked]
@@ -153,10 +155,8 @@ class Cell:
     def _move_paths(self) -> None:
         for item, mocap, path in self._paths:
             pose = self.base_from_station @ resting(item, path.at(self.time_s))
-            self.data.mocap_pos[mocap], self.data.mocap_quat[mocap] = (
-                pose.translation,
-                quaternion(pose.rotation),
-            )
+            self.data.mocap_pos[mocap] = pose.translation
+            self.data.mocap_quat[mocap] = quaternion(pose.rotation)
 
     def _settle_kinematics(self) -> None:
         """Poses and velocities of this very moment: `mj_step` leaves those before the last step."""
@@ -261,13 +261,18 @@ class Cell:
         R = self._station_from_base.rotation
         return np.concatenate([R @ result[3:], R @ result[:3]])
 
-    def place(self, name: str, station_from_item: SE3) -> None:
-        """Put a free item there, at rest."""
+    def place(self, name: str, station_from_item: SE3, velocity: Float[Array, "6"] | None = None) -> None:
+        """Put a free item there, at rest or moving (velocity as `velocity` gives it)."""
         item = self._items.get(name)
         if item is None or item.fixed or item.path is not None:
             free = [i.name for i in self.design.items if i.path is None and not i.fixed]
             raise BadParameter("item to place", name, f"a free one: {', '.join(free) or 'there is none'}")
         self._put_free(item, station_from_item)
+        if velocity is not None:
+            # MuJoCo has a free body's linear velocity in axes of the world, its angular in its own.
+            linear, angular = np.asarray(velocity[:3]), np.asarray(velocity[3:])
+            R = self.base_from_station.rotation
+            self.data.joint(ITEM + name).qvel[:] = [*(R @ linear), *(station_from_item.rotation.T @ angular)]
         self._settle_kinematics()
 
     def set_light(
@@ -284,7 +289,8 @@ class Cell:
         if key is not None:
             model.light_diffuse[sun], model.light_specular[sun] = key, 0.5 * key
         if ambient is not None:
-            model.light_diffuse[sky], model.light_ambient[sky] = 0.35 * ambient, 0.65 * ambient
+            model.light_diffuse[sky] = SKY_SHARE * ambient
+            model.light_ambient[sky] = (1 - SKY_SHARE) * ambient
         if azimuth_rad is not None or elevation_rad is not None:
             azimuth = lights.azimuth_rad if azimuth_rad is None else azimuth_rad
             elevation = lights.elevation_rad if elevation_rad is None else elevation_rad
@@ -292,6 +298,15 @@ class Cell:
             model.light_pos[sun] = self.base_from_station.translation + 1.6 * towards
             model.light_dir[sun] = -towards
         self._mujoco.mj_camlight(model, self.data)
+
+    @property
+    def light_is_as_designed(self) -> bool:
+        """Whether the lights are those of the design."""
+        return bool((self._lights == self._lights_now()).all())
+
+    def _lights_now(self) -> Array:
+        m = self.model
+        return np.stack([m.light_diffuse, m.light_ambient, m.light_specular, m.light_dir, m.light_pos])
 
     def _put_free(self, item: Item, station_from_item: SE3) -> None:
         pose = self.base_from_station @ station_from_item

@@ -46,6 +46,8 @@ class Item:
     def __post_init__(self) -> None:
         from vision_robot.sim.shapes import shape_named
 
+        for name in ("size_m", "colour"):  # lists come from TOML
+            object.__setattr__(self, name, tuple(getattr(self, name)))
         shape_named(self.shape, self.size_m, self.colour)  # refuses what cannot be made
         _colour(f"colour of {self.name}", self.colour)
         if self.fixed and self.path is not None:
@@ -82,10 +84,10 @@ class Lights:
 
     azimuth_rad: float = 2.2
     """Where the key light stands, about {S}'s z from its x."""
-    elevation_rad: float = 1.05
-    """How high it stands."""
-    key: float = 0.55
-    ambient: float = 0.4
+    elevation_rad: float = 1.2
+    """How high it stands. At 1.05 it grazes the flanks of six-sided pencils, which shadow maps speckle."""
+    key: float = 0.5
+    ambient: float = 0.5
     shadows: bool = True
     shadow_px: int = 2048
     """Side of the shadow map; its cost is the cost of shadows."""

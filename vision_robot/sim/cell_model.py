@@ -21,7 +21,9 @@ __all__ = [
     "ITEM",
     "LABEL",
     "LABEL_THICKNESS_M",
-    "THINGS",
+    "FIXED",
+    "FLOOR_BELOW_M",
+    "MOVING",
     "build",
     "quaternion",
     "resting",
@@ -34,12 +36,12 @@ Picture: TypeAlias = UInt8[Array, "rows columns 3"]
 
 OWN_ARM = Path(vision_robot.arm.__file__).parent / "models" / "column_arm.xml"
 
-BACKGROUND, THINGS, COLLIDERS = 0, 1, 3
-"""Groups of geoms: table and floor; things on the table; what collides and is not drawn. Arms are drawn in
-group 2, as is the custom of MJCF files."""
+BACKGROUND, MOVING, FIXED, COLLIDERS = 0, 1, 2, 3
+"""Groups of geoms: table, belt and floor; what can move; what stands; what collides and is not drawn."""
 ITEM, ARM = "item/", "arm/"
 """Beginnings of names."""
 TABLE, BELT, LABEL = "table", "belt", "label"
+BACKGROUNDS = (TABLE, TABLE + "1", "belt_seen", "floor")
 
 TABLE_THICKNESS_M = 0.03
 LABEL_THICKNESS_M = 0.002
@@ -54,7 +56,7 @@ SCENE = """
           timestep="{timestep:.9g}"/>
   <statistic extent="1" center="{x:.9g} {y:.9g} {z:.9g}" meansize="0.05"/>
   <visual>
-    <map znear="0.05" zfar="8" shadowclip="0.75" shadowscale="0.9"/>
+    <map znear="0.05" zfar="8" shadowclip="0.6" shadowscale="0.9"/>
     <quality shadowsize="{shadow_px}" numslices="40" numstacks="16" numquads="4"/>
     <headlight ambient="0 0 0" diffuse="0 0 0" specular="0 0 0"/>
   </visual>
@@ -89,9 +91,21 @@ def build(design: CellDesign) -> MjModel:
     for name, picture in pictures.items():
         _add_picture(mj, spec, name, picture)
     model = spec.compile()
+    _sort_into_groups(model)
     for name, picture in pictures.items():
         _paint(model, name, picture)
     return model
+
+
+def _sort_into_groups(model: MjModel) -> None:
+    """What is drawn and is not background goes by whether it can move, however a file has it."""
+    bodies = model.geom_bodyid
+    mocap = model.body_mocapid[model.body_rootid[bodies]] >= 0
+    moves = (model.body_weldid[bodies] != 0) | mocap
+    names = [model.geom(i).name for i in range(model.ngeom)]
+    background = np.array([name in BACKGROUNDS for name in names])
+    drawn = (model.geom_group < COLLIDERS) & ~background
+    model.geom_group[drawn] = np.where(moves, MOVING, FIXED)[drawn]
 
 
 def quaternion(rotation: Float[Array, "3 3"]) -> Float[Array, "4"]:
@@ -126,7 +140,10 @@ def _paint(model: MjModel, name: str, picture: Picture) -> None:
 
 
 def _add_table(mj: Any, spec: MjSpec, station: MjsBody, table: Table, belt: Belt | None) -> None:
-    """The top as one box, or as two with the belt between; below it a floor."""
+    """The top as one box, or as two with the belt between; below it a floor.
+
+    They cast no shadow themselves: a shadow map speckles large faces with their own.
+    """
     material = spec.add_material(name=TABLE, specular=0.08, shininess=0.2)
     material.textures[mj.mjtTextureRole.mjTEXROLE_RGB] = TABLE
     (width, depth), (x, y) = table.size_m, table.middle_m
@@ -147,6 +164,7 @@ def _add_table(mj: Any, spec: MjSpec, station: MjsBody, table: Table, belt: Belt
             material=TABLE,
             group=BACKGROUND,
             friction=TABLE_FRICTION,
+            castshadow=False,
         )
     station.add_geom(
         name="floor",
@@ -156,6 +174,7 @@ def _add_table(mj: Any, spec: MjSpec, station: MjsBody, table: Table, belt: Belt
         rgba=[0.36, 0.37, 0.39, 1],
         group=BACKGROUND,
         friction=TABLE_FRICTION,
+        castshadow=False,
     )
 
 
@@ -191,7 +210,12 @@ def _add_belt(
         group=BACKGROUND,
         contype=0,
         conaffinity=0,
+        castshadow=False,
     )
+
+
+SKY_SHARE = 0.25
+"""Share of the ambient light that comes from straight above, so that sides are darker than tops."""
 
 
 def _add_lights(mj: Any, spec: MjSpec, lights: Lights, base_from_station: SE3) -> None:
@@ -213,8 +237,8 @@ def _add_lights(mj: Any, spec: MjSpec, lights: Lights, base_from_station: SE3) -
         type=mj.mjtLightType.mjLIGHT_DIRECTIONAL,
         pos=base_from_station.translation + 2 * up,
         dir=-up,
-        diffuse=[0.35 * lights.ambient] * 3,
-        ambient=[0.65 * lights.ambient] * 3,
+        diffuse=[SKY_SHARE * lights.ambient] * 3,
+        ambient=[(1 - SKY_SHARE) * lights.ambient] * 3,
         specular=[0, 0, 0],
         castshadow=False,
     )
@@ -243,7 +267,7 @@ def _add_item(mj: Any, spec: MjSpec, item: Item, base_from_station: SE3) -> None
             type=mj.mjtGeom.mjGEOM_MESH,
             meshname=name,
             material=name,
-            group=THINGS,
+            group=MOVING,
             contype=0,
             conaffinity=0,
             mass=0,
@@ -257,7 +281,6 @@ def _add_collider(mj: Any, spec: MjSpec, body: MjsBody, item: Item, shape: Shape
     kinds = {
         "box": mj.mjtGeom.mjGEOM_BOX,
         "capsule": mj.mjtGeom.mjGEOM_CAPSULE,
-        "cylinder": mj.mjtGeom.mjGEOM_CYLINDER,
         "mesh": mj.mjtGeom.mjGEOM_MESH,
     }
     if collider.kind == "mesh":
@@ -311,5 +334,5 @@ def _add_label(mj: Any, arm: MjSpec, hand: MjsBody, mount: ArmMount, colour: Col
         mass=0.004,
         contype=0,
         conaffinity=0,
-        group=THINGS,
+        group=MOVING,
     )

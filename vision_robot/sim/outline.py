@@ -22,13 +22,14 @@ class Moments:
     first: Float[Array, "2"]
     second: Float[Array, "3"]
 
-    def without(self, u: Int[Array, "n"], v: Int[Array, "n"]) -> "Moments":
-        """What is left when whole pixels are taken away."""
-        n = float(len(u))
-        u, v = u.astype(float), v.astype(float)
-        # A pixel is a square of side 1: it adds 1/12 to each second moment about its centre.
-        gone = np.array([u @ u + n / 12, u @ v, v @ v + n / 12])
-        return Moments(self.area - n, self.first - (u.sum(), v.sum()), self.second - gone)
+    def without(self, u: Float[Array, "n"], v: Float[Array, "n"], side: float = 1.0) -> "Moments":
+        """What is left when squares of this side about (u, v) are taken away."""
+        # A square adds side^2/12 for each unit of its area to the second moments about its centre.
+        n, own, area = len(u), side * side / 12, side * side
+        gone = area * np.array([u @ u + n * own, u @ v, v @ v + n * own])
+        return Moments(
+            self.area - n * area, self.first - area * np.array([u.sum(), v.sum()]), self.second - gone
+        )
 
     @property
     def centroid(self) -> Float[Array, "2"]:
@@ -76,7 +77,7 @@ def area_moments(polygon: Float[Array, "m 2"]) -> Moments:
         return Moments(0.0, np.zeros(2), np.zeros(3))
     shift = polygon.mean(axis=0)  # about a point nearby: no digits are lost to large coordinates
     x, y = (polygon - shift).T
-    x1, y1 = np.roll(x, -1), np.roll(y, -1)
+    x1, y1 = np.append(x[1:], x[0]), np.append(y[1:], y[0])
     cross = x * y1 - x1 * y
     area = cross.sum() / 2
     sign = 1.0 if area >= 0 else -1.0
@@ -141,10 +142,13 @@ def row_spans(polygon: Float[Array, "m 2"]) -> tuple[int, Int[Array, "rows"], In
 
 def _facing(direction: Float[Array, "3"]) -> Float[Array, "3 3"]:
     """A rotation that carries a direction to z."""
-    z = direction / np.linalg.norm(direction)
-    x = np.cross(np.array([0.0, 1, 0]) if abs(z[1]) < 0.9 else np.array([1.0, 0, 0]), z)
-    x /= np.linalg.norm(x)
-    return np.stack([x, np.cross(z, x), z])
+    z = direction / np.sqrt(direction @ direction)
+    a, b, c = z.tolist()
+    # Across the smaller of the first two; written out, for numpy's cross product takes ten times as long.
+    x = np.array([c, 0.0, -a]) if abs(b) < 0.9 else np.array([0.0, -c, b])
+    x /= np.sqrt(x @ x)
+    p, q, r = x.tolist()
+    return np.array([x, [b * r - c * q, c * p - a * r, a * q - b * p], z])
 
 
 def _cut(flat: Float[Array, "m 2"], camera: Camera) -> Float[Array, "k 3"]:

@@ -7,12 +7,12 @@ import numpy as np
 
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3, Camera
-from vision_robot.sim.canvas import Canvas
+from vision_robot.sim.canvas import Canvas, Region
 from vision_robot.sim.cover import PinholeCover
 from vision_robot.sim.gl import load_mujoco
 from vision_robot.types import Array, Float, Image, Int
 
-__all__ = ["Renderer"]
+__all__ = ["Renderer", "straight"]
 
 # mujoco's own classes, which carry no type information.
 MjModel: TypeAlias = Any
@@ -40,16 +40,33 @@ class Renderer:
         self._geom_body = np.array(model.geom_bodyid)
         self._canvas = Canvas(model, data, multisamples=multisamples, shadows=shadows)
 
-    def render(self, camera: Camera, world_from_cam: SE3, *, grey: bool = False) -> Image:
+    def render(
+        self,
+        camera: Camera,
+        world_from_cam: SE3,
+        *,
+        grey: bool = False,
+        hidden_groups: tuple[int, ...] = (),
+        region: Region | None = None,
+    ) -> Image:
         """Blue-green-red picture (height, width, 3), or grey (height, width) on request.
 
-        Black where the lens sees nothing.
+        Black where the lens sees nothing. Geoms of `hidden_groups` are left out. Of a pinhole camera's
+        picture a `region` alone may be asked for, in less time.
         """
-        if _straight(camera):
-            return self._colours(camera, world_from_cam, grey=grey)
+        if straight(camera):
+            rgb = self._canvas.colours(camera, world_from_cam, hidden_groups=hidden_groups, region=region)
+            return _upright(rgb, grey=grey)
+        if region is not None:
+            raise BadParameter("region", region, "left out for a camera with a lens or skew")
         cover = self._cover(camera)
         return cover.assemble(
-            [self._colours(face, world_from_cam @ turn, grey=grey) for face, turn in cover.faces]
+            [
+                _upright(
+                    self._canvas.colours(face, world_from_cam @ turn, hidden_groups=hidden_groups), grey=grey
+                )
+                for face, turn in cover.faces
+            ]
         )
 
     def depth(self, camera: Camera, world_from_cam: SE3) -> Float[Array, "height width"]:
@@ -73,13 +90,16 @@ class Renderer:
         *,
         hidden_groups: tuple[int, ...] = (),
         depth: bool = False,
+        region: Region | None = None,
     ) -> tuple[Int[Array, "height width"], Float[Array, "height width"] | None]:
         """The body seen at each pixel centre, from 1 (0: none), and depth [m] if asked for, in one draw.
 
         Geoms of `hidden_groups` are left out, which saves their time. The numbers are of the smallest
-        unsigned type that holds them.
+        unsigned type that holds them. Of a pinhole camera's picture a `region` alone may be asked for.
         """
-        number, objects, metres = self._coded(camera, world_from_cam, hidden_groups, depth=depth)
+        number, objects, metres = self._coded(
+            camera, world_from_cam, hidden_groups, depth=depth, region=region
+        )
         geom = load_mujoco().mjtObj.mjOBJ_GEOM.value
         table = np.zeros(256 if number.dtype == np.uint8 else len(objects), dtype=np.int64)
         isgeom = objects[:, 1] == geom
@@ -104,19 +124,24 @@ class Renderer:
             self._covers = {camera: PinholeCover.of(camera)}  # maps are large: keep the last one only
         return self._covers[camera]
 
-    def _colours(self, face: Camera, world_from_cam: SE3, *, grey: bool) -> Image:
-        rgb = self._canvas.colours(face, world_from_cam)
-        # OpenGL's first row is the lowest.
-        return cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY if grey else cv2.COLOR_RGB2BGR)[::-1]
-
     def _coded(
-        self, camera: Camera, world_from_cam: SE3, hidden_groups: tuple[int, ...], *, depth: bool
+        self,
+        camera: Camera,
+        world_from_cam: SE3,
+        hidden_groups: tuple[int, ...] = (),
+        *,
+        depth: bool,
+        region: Region | None = None,
     ) -> tuple[Int[Array, "height width"], Int[Array, "k 2"], Float[Array, "height width"] | None]:
         """Number at each pixel centre, object and type behind each number, depth if asked for."""
         canvas = self._canvas
-        if _straight(camera):
-            number, metres = canvas.numbers(camera, world_from_cam, hidden_groups=hidden_groups, depth=depth)
+        if straight(camera):
+            number, metres = canvas.numbers(
+                camera, world_from_cam, hidden_groups=hidden_groups, depth=depth, region=region
+            )
             return number, canvas.objects(hidden_groups), metres
+        if region is not None:
+            raise BadParameter("region", region, "left out for a camera with a lens or skew")
         cover = self._cover(camera)
         drawn = [
             canvas.numbers(face, world_from_cam @ turn, hidden_groups=hidden_groups, depth=depth)
@@ -129,6 +154,11 @@ class Renderer:
         return number, canvas.objects(hidden_groups), metres
 
 
-def _straight(camera: Camera) -> bool:
+def _upright(rgb: Image, *, grey: bool) -> Image:
+    # OpenGL's first row is the lowest.
+    return cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY if grey else cv2.COLOR_RGB2BGR)[::-1]
+
+
+def straight(camera: Camera) -> bool:
     """Whether OpenGL itself can project like this camera."""
     return camera.model == "pinhole" and camera.skew == 0

@@ -7,6 +7,7 @@ truth then speak of the very same body.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -37,7 +38,7 @@ class Collider:
     """A MuJoCo primitive for contacts: type, size and place in the item's frame."""
 
     kind: str
-    """box, capsule, cylinder, or mesh: the hull itself."""
+    """box, capsule, or mesh: the hull itself."""
     size: tuple[float, ...] = ()
     middle: tuple[float, float, float] = (0.0, 0.0, 0.0)
     along_x: bool = False
@@ -63,6 +64,7 @@ class Shape:
         return float(np.linalg.norm(self.hull[:, :2], axis=1).max())
 
 
+@lru_cache(maxsize=512)
 def shape_named(name: str, size_m: tuple[float, ...], colour: Colour) -> Shape:
     """The shape of that name; raises BadParameter for an unknown one or an impossible size."""
     if name not in SHAPES:
@@ -136,8 +138,7 @@ def _disc(size: tuple[float, ...], colour: Colour) -> Shape:
     diameter, thickness = size
     rings = [_ring(z, diameter / 2, SIDES)[:, [1, 2, 0]] for z in (-thickness / 2, thickness / 2)]
     hull = np.concatenate(rings)
-    cylinder = Collider("cylinder", (diameter / 2, thickness / 2))
-    return Shape((Part(hull, colour),), hull, (cylinder,), thickness / 2, PAPER, has_yaw=False)
+    return Shape((Part(hull, colour),), hull, (Collider("mesh"),), thickness / 2, PAPER, has_yaw=False)
 
 
 SHAPES: dict[str, tuple[tuple[str, ...], Callable[[tuple[float, ...], Colour], Shape]]] = {

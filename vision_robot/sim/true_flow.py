@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 from functools import lru_cache
 
-import cv2
 import numpy as np
 
 from vision_robot.errors import BadParameter
-from vision_robot.geometry import SE3, Camera, pixel_grid
+from vision_robot.geometry import Camera, pixel_grid
 from vision_robot.sim.truth import TruthFrame
 from vision_robot.types import Array, Bool, Float, Int
 
@@ -34,89 +33,93 @@ def true_flow(before: TruthFrame, after: TruthFrame) -> TrueFlow:
         raise BadParameter("frames for a flow", "without depth", "made by TruthRenderer(..., depth=True)")
     if before.camera != after.camera:
         raise BadParameter("cameras of a flow", (before.camera, after.camera), "the same")
-    motions = _motions(before, after)
-    # Only what moves, or shows another body in the other picture, is looked at pixel by pixel.
-    asked = _any_of(before.bodies, list(motions)) | (before.bodies != after.bodies)
-    row, column = np.divmod(np.flatnonzero(asked), before.bodies.shape[1])
-    flow = np.zeros((*before.bodies.shape, 2), dtype=np.float32)
-    body, distance = before.bodies[row, column], before.depth[row, column].astype(float)
-    rays = _rays(before.camera)
-    for number, motion in motions.items():
-        mine = np.flatnonzero(body == number)
-        at = row[mine], column[mine]
-        moved = _moved(rays[at], distance[mine], motion)
-        flow[at] = before.camera.project(moved) - np.stack(at[::-1], axis=-1)
-        distance[mine] = moved[:, 2]
-    hidden = np.zeros(before.bodies.shape, dtype=bool)
-    hidden[row, column] = ~_shown(after, row, column, flow[row, column], body, distance)
-    nowhere = np.isnan(before.depth)
-    if nowhere.any():
-        flow[nowhere] = np.nan
-    hidden[nowhere] = True
-    return TrueFlow(flow, hidden)
+    camera = before.camera
+    height, width = before.bodies.shape
+    moves, R, t = _motions(before, after)
+    body = before.bodies.ravel()
+    at = np.flatnonzero(moves[body])
+    mine = body[at]
+    moved = _moved(_rays(camera)[at], before.depth.ravel()[at], R, t, mine)
+    flow = np.zeros((height * width, 2), dtype=np.float32)
+    row, column = np.divmod(at, width)
+    flow[at] = camera.project(moved) - np.stack([column, row], axis=-1)
+    unseen = np.isnan(before.depth.ravel())
+    if unseen.any():
+        flow[unseen] = np.nan
+    reach = before.depth.ravel().copy()
+    reach[at] = moved[:, 2]
+    # Where nothing moves and the same body is still seen, nothing needs to be asked.
+    asked = np.flatnonzero((moves[body] | (after.bodies.ravel() != body)) & ~unseen)
+    hidden = unseen
+    hidden[asked] = _hidden(after, asked, body[asked], flow[asked], reach[asked])
+    return TrueFlow(flow.reshape(height, width, 2), hidden.reshape(height, width))
 
 
-def _motions(before: TruthFrame, after: TruthFrame) -> dict[int, SE3]:
-    """cam_after_from_cam_before of the points of each body that moves against the camera.
+def _motions(
+    before: TruthFrame, after: TruthFrame
+) -> tuple[Bool[Array, "bodies+1"], Float[Array, "bodies+1 3 3"], Float[Array, "bodies+1 3"]]:
+    """Which bodies move against the camera, and cam_after_from_cam_before of the points of each.
 
-    Body 0 is what is infinitely far away.
+    Body 0 is what is infinitely far away: it moves as the camera does.
     """
     camera_motion = after.cam_from_station @ before.cam_from_station.inverse()
-    everything = after.cam_from_body @ before.cam_from_body.inverse()
-    motions = {0: camera_motion, **{k + 1: everything[k] for k in range(len(everything))}}
-    return {body: motion for body, motion in motions.items() if _is_motion(motion)}
-
-
-def _is_motion(motion: SE3) -> bool:
-    return max(np.abs(motion.rotation - np.eye(3)).max(), np.abs(motion.translation).max()) > 1e-12
-
-
-def _any_of(bodies: Int[Array, "height width"], numbers: list[int]) -> Bool[Array, "height width"]:
-    """Where one of these bodies is seen."""
-    table = np.zeros(max(256, int(bodies.max()) + 1), dtype=np.uint8)
-    table[[number for number in numbers if number < len(table)]] = 1
-    return (cv2.LUT(bodies, table) if bodies.dtype == np.uint8 else table[bodies]) != 0
+    motion = after.cam_from_body @ before.cam_from_body.inverse()
+    R = np.concatenate([camera_motion.rotation[None], motion.rotation])
+    t = np.concatenate([camera_motion.translation[None], motion.translation])
+    change = np.maximum(np.abs(R - np.eye(3)).max(axis=(1, 2)), np.abs(t).max(axis=1))
+    return change > 1e-12, R, t
 
 
 @lru_cache(maxsize=2)
-def _rays(camera: Camera) -> Float[Array, "height width 3"]:
-    """Directions through the pixels' centres, of length 1 along the optical axis where they point ahead."""
-    rays = camera.unproject(pixel_grid(camera.width, camera.height))
+def _rays(camera: Camera) -> Float[Array, "pixels 3"]:
+    """Directions through the pixels' centres, 1 along the optical axis, row by row."""
+    rays = camera.unproject(pixel_grid(camera.width, camera.height)).reshape(-1, 3)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return rays / rays[..., 2:]
+        return rays / rays[:, 2:]
 
 
-def _moved(rays: Float[Array, "n 3"], depth: Float[Array, "n"], motion: SE3) -> Float[Array, "n 3"]:
-    """Points at `depth` along the rays after the motion; those infinitely far away only turn."""
-    far = np.isinf(depth)
-    points = rays * np.where(far, 1.0, depth)[:, None]
-    moved = points @ motion.rotation.T
-    moved[~far] += motion.translation
-    moved[far] *= 1e9
+def _moved(
+    rays: Float[Array, "n 3"],
+    depth: Float[Array, "n"],
+    R: Float[Array, "bodies+1 3 3"],
+    t: Float[Array, "bodies+1 3"],
+    body: Int[Array, "n"],
+) -> Float[Array, "n 3"]:
+    """Points at `depth` along the rays after their bodies' motions; those infinitely far away only turn."""
+    moved = np.empty_like(rays)
+    for one in np.flatnonzero(np.bincount(body, minlength=1)).tolist():
+        mine = body == one
+        points = rays[mine]
+        if one:
+            moved[mine] = (points * depth[mine, None]) @ R[one].T + t[one]
+        else:
+            moved[mine] = 1e9 * points @ R[one].T
     return moved
 
 
-def _shown(
+def _hidden(
     after: TruthFrame,
-    row: Int[Array, "n"],
-    column: Int[Array, "n"],
-    flow: Float[Array, "n 2"],
+    at: Int[Array, "n"],
     body: Int[Array, "n"],
-    distance: Float[Array, "n"],
+    flow: Float[Array, "n 2"],
+    reach: Float[Array, "n"],
 ) -> Bool[Array, "n"]:
-    """Which points the other picture shows; each is of a body, at a distance after the motion."""
+    """Which of the points that come from the pixels `at`, `reach` away after the motion, are not shown."""
     assert after.depth is not None
     height, width = after.bodies.shape
-    u, v = (flow + np.stack([column, row], axis=-1)).T
-    inside = (u >= -0.5) & (u <= width - 0.5) & (v >= -0.5) & (v <= height - 0.5)
-    left, top = (np.floor(np.where(inside, x, 0)).astype(np.int32) for x in (u, v))
+    row, column = np.divmod(at, width)
+    with np.errstate(invalid="ignore"):
+        u, v = column + flow[:, 0], row + flow[:, 1]
+        inside = (u >= -0.5) & (u <= width - 0.5) & (v >= -0.5) & (v <= height - 0.5)
+    left, top = (np.floor(np.where(inside, x, 0)).astype(np.intp) for x in (u, v))
     # How far one pixel's width reaches at that distance: slanted surfaces differ by about so much.
-    tolerance = np.abs(distance) / min(after.camera.fx, after.camera.fy)
-    shown = np.zeros(len(row), dtype=bool)
+    tolerance = np.abs(reach) / min(after.camera.fx, after.camera.fy)
+    shown = np.zeros(len(at), dtype=bool)
+    bodies, depths = after.bodies.ravel(), after.depth.ravel()
     for du in (0, 1):
         for dv in (0, 1):
-            there = np.clip(top + dv, 0, height - 1), np.clip(left + du, 0, width - 1)
+            there = np.clip(top + dv, 0, height - 1) * width + np.clip(left + du, 0, width - 1)
             with np.errstate(invalid="ignore"):
-                near = np.abs(after.depth[there] - distance) <= tolerance
-            shown |= (after.bodies[there] == body) & (near | (body == 0))
-    return inside & shown
+                near = np.abs(depths[there] - reach) <= tolerance
+            shown |= (bodies[there] == body) & (near | (body == 0))
+    return ~(inside & shown)
