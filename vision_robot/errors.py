@@ -21,9 +21,11 @@ __all__ = [
     "BoardNotFound",
     "DegenerateViews",
     "MissingOpenGL",
+    "MissingPackage",
     "MixedImageSizes",
     "NoConvergence",
     "NoImages",
+    "NoScheduler",
     "TooFewViews",
     "UnreadableImage",
     "UnwritableOutput",
@@ -64,6 +66,14 @@ class MissingOpenGL(VisionRobotError):
         )
 
 
+class MissingPackage(VisionRobotError):
+    """An optional package is needed for what was asked."""
+
+    def __init__(self, package: str, purpose: str):
+        self.package, self.purpose = package, purpose
+        super().__init__(f"{purpose} needs the package {package}: install it with 'pip install {package}'")
+
+
 class BadInput(VisionRobotError):
     """The caller gave something that cannot be used and can mend it."""
 
@@ -85,6 +95,14 @@ class NoImages(BadInput):
             f"no image found in {', '.join(self.paths) or 'an empty list'}: "
             "give image files, a folder of images, a quoted pattern or a video"
         )
+
+
+class NoScheduler(BadInput):
+    """No cluster answers where one was named."""
+
+    def __init__(self, address: str, why: str):
+        self.address, self.why = address, why
+        super().__init__(f"no scheduler answers at {address} ({why}): start one with 'dask scheduler'")
 
 
 class UnreadableImage(BadInput):

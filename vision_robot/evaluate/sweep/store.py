@@ -1,0 +1,62 @@
+"""Results on disk, one small file a cell, under the hash of what it is a result of."""
+
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from vision_robot.errors import BadTable
+from vision_robot.evaluate.sweep.cell import Cell, Outcome
+from vision_robot.files import write_text
+
+__all__ = ["Store"]
+
+SCHEMA = "vr.outcome/1"
+
+
+class Store:
+    """A folder of outcomes. Files appear whole, so that several runs may share it and any may be killed."""
+
+    def __init__(self, folder: Path | str):
+        self.folder = Path(folder)
+
+    def find(self, cell: Cell) -> Outcome | None:
+        """The outcome of this very cell; None where there is none, or its file is damaged."""
+        try:
+            return _outcome(json.loads(self._place(cell.key).read_text(encoding="utf-8")))
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+
+    def keep(self, outcome: Outcome) -> None:
+        """Write an outcome. Raises UnwritableOutput."""
+        figures = {
+            name: value if math.isfinite(value) else repr(value) for name, value in outcome.figures.items()
+        }
+        content = {"schema": SCHEMA, **asdict(outcome), "figures": figures}
+        write_text(self._place(outcome.cell.key), json.dumps(content, allow_nan=False) + "\n")
+
+    def __iter__(self) -> Iterator[Outcome]:
+        """All outcomes, in the order of their keys. Raises BadTable, naming it, for a file that is none."""
+        for path in sorted(self.folder.glob("??/*.json")):
+            try:
+                yield _outcome(json.loads(path.read_text(encoding="utf-8")))
+            except (OSError, ValueError, KeyError, TypeError) as error:
+                raise BadTable(path, "it is no outcome of a sweep; remove it") from error
+
+    def _place(self, key: str) -> Path:
+        return self.folder / key[:2] / f"{key}.json"
+
+
+def _outcome(content: dict[str, Any]) -> Outcome:
+    if content["schema"] != SCHEMA:
+        raise ValueError(content["schema"])
+    return Outcome(
+        cell=Cell(**content["cell"]),
+        # What JSON has no number for stands there as a word: nan, inf.
+        figures={name: float(value) for name, value in content["figures"].items()},
+        failure=content["failure"],
+        seconds=content["seconds"],
+        peak_memory_bytes=content["peak_memory_bytes"],
+    )
