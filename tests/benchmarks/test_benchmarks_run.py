@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("name", ["coverage", "next_view", "refinement"])
+@pytest.mark.parametrize("name", ["coverage", "next_view", "refinement", "truth_accuracy", "truth_speed"])
 def test_it_runs(name):
     script = ROOT / "benchmarks" / f"{name}.py"
     done = subprocess.run(

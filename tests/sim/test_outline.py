@@ -41,7 +41,7 @@ def test_axes_of_a_turned_ellipse():
 def test_taking_pixels_away_is_the_same_as_not_having_them():
     """A 6 x 4 block of pixels less its right half is its left half."""
     block = area_moments(np.array([[-0.5, -0.5], [5.5, -0.5], [5.5, 3.5], [-0.5, 3.5]]))
-    v, u = (index.ravel() for index in np.mgrid[0:4, 3:6])
+    v, u = (index.ravel().astype(float) for index in np.mgrid[0:4, 3:6])
     rest = block.without(u, v)
     left = area_moments(np.array([[-0.5, -0.5], [2.5, -0.5], [2.5, 3.5], [-0.5, 3.5]]))
     assert rest.area == pytest.approx(left.area)

@@ -23,7 +23,7 @@ ITEMS = (
     Item("under", "rod", (0.14, 0.01), x_m=-0.03, y_m=0.02, yaw_rad=0.4, fixed=True),
     Item("over", "box", (0.05, 0.03, 0.02), x_m=-0.01, y_m=0.03, above_m=0.03, yaw_rad=1.0, fixed=True),
     Item("pencil", "pencil", (0.15, 0.009), x_m=0.05, y_m=-0.1, yaw_rad=2.0, fixed=True),
-    Item("cut", "box", (0.05, 0.05, 0.02), x_m=-0.09, y_m=-0.16, yaw_rad=0.3, fixed=True),
+    Item("cut", "box", (0.05, 0.05, 0.02), x_m=-0.02, y_m=-0.2, yaw_rad=0.3, fixed=True),
 )
 DARK = Lights(shadows=False)
 
@@ -74,7 +74,7 @@ def counted(ids: np.ndarray, thing: int) -> dict[str, np.ndarray | float]:
 
 @pytest.mark.parametrize("name", CAMERAS)
 def test_outlines_hold_against_finer_pictures(name):
-    """Against masks of finer pixels: centroid <= 0.05 px, area and axes 1 %, direction 1 deg, box 0.15 px.
+    """Against masks of finer pixels: centroid <= 0.05 px, area 1 %, axes 0.1 px, direction 1 deg, box 0.25.
 
     A lens takes what is hidden from pixels, which leaves 0.25 px there.
     """
@@ -91,8 +91,8 @@ def test_outlines_hold_against_finer_pictures(name):
         exact = item.name != "under" or name == "pinhole"
         assert np.abs(truth.centroid_px[i] - mask["centroid"]).max() < (0.05 if exact else 0.25), item.name
         assert truth.area_px[i] == pytest.approx(mask["area"], rel=0.01 if exact else 0.02), item.name
-        assert truth.axes_px[i] == pytest.approx(mask["axes"], rel=0.01 if exact else 0.02), item.name
-        assert np.abs(truth.visible_box_px[i] - mask["box"]).max() < (0.15 if exact else 0.6)
+        assert np.abs(truth.axes_px[i] - mask["axes"]).max() < (0.1 if exact else 1.0), item.name
+        assert np.abs(truth.visible_box_px[i] - mask["box"]).max() < (0.25 if exact else 0.6), item.name
         direction = np.array([np.cos(truth.orientation_rad[i]), np.sin(truth.orientation_rad[i])])
         if truth.axes_px[i, 0] > 1.3 * truth.axes_px[i, 1]:
             assert abs(direction @ mask["direction"]) > np.cos(np.radians(1)), item.name

@@ -7,7 +7,7 @@ import numpy as np
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.gl import load_mujoco
-from vision_robot.types import Array, Float, Image, Int
+from vision_robot.types import Array, Float, Image, Int, Integer
 
 __all__ = ["Canvas", "Region"]
 
@@ -69,7 +69,7 @@ class Canvas:
         hidden_groups: tuple[int, ...] = (),
         depth: bool = False,
         region: Region | None = None,
-    ) -> tuple[Int[Array, "rows columns"], Float[Array, "rows columns"] | None]:
+    ) -> tuple[Integer[Array, "rows columns"], Float[Array, "rows columns"] | None]:
         """The scene's numbers at the pixels' centres and, if asked for, depth [m], upper row first.
 
         0 is nothing, `objects` tells about the others; depth is infinite where nothing is hit. Geoms

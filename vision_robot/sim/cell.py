@@ -7,23 +7,15 @@ import numpy as np
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3
 from vision_robot.sim.cell_design import CellDesign, Item
-from vision_robot.sim.cell_model import (
-    ARM,
-    BELT,
-    ITEM,
-    LABEL,
-    LABEL_THICKNESS_M,
-    SKY_SHARE,
-    build,
-    direction,
-    quaternion,
-    resting,
-)
+from vision_robot.sim.cell_model import build
+from vision_robot.sim.cell_names import ARM, BELT, ITEM, LABEL, LABEL_THICKNESS_M
 from vision_robot.sim.drive import Drive
 from vision_robot.sim.gl import load_mujoco
+from vision_robot.sim.placing import quaternion, resting
 from vision_robot.sim.scatter import scattered
 from vision_robot.sim.shapes import Shape, shape_named
 from vision_robot.sim.surfaces import BELT_PITCH_M
+from vision_robot.sim.surroundings import SKY_SHARE, direction
 from vision_robot.types import Array, Float
 
 __all__ = ["Cell"]

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from vision_robot.geometry import SE3, Camera, pixel_grid
-from vision_robot.types import Array, Bool, Float, Image, Int, UInt8
+from vision_robot.types import Array, Bool, Float, Image, Int, Integer, UInt8
 
 __all__ = ["PinholeCover"]
 
@@ -39,7 +39,7 @@ class _Patch:
     window: tuple[slice, slice]
     """Rows and columns of the camera's image."""
     inside: Bool[Array, "rows columns"]
-    fine: Float[Array, "rows*n columns*n 2"]
+    fine: Float[Array, "fine_rows fine_columns 2"]
     """Pixels of `face` at the n x n samples of each pixel, float32 for OpenCV."""
     centres: Float[Array, "rows columns 2"]
     """Pixels of `face` at the pixel centres, float32."""
@@ -80,7 +80,7 @@ class PinholeCover:
         """The pinhole pictures to render, each with its cam_from_face."""
         return [(patch.face, patch.turn) for patch in self.patches]
 
-    def assemble(self, pictures: Sequence[Image]) -> Image:
+    def assemble(self, pictures: Sequence[UInt8[Array, "_ _ *channels"]]) -> Image:
         """The camera's image from the pictures of `faces`; black where the lens sees nothing."""
         n, channels = SUBSAMPLES, pictures[0].shape[2:]
         image = np.zeros((self.camera.height, self.camera.width, *channels), dtype=np.uint8)
@@ -93,8 +93,8 @@ class PinholeCover:
 
     def assemble_depth(
         self,
-        depths: Sequence[Float[Array, "rows columns"]],
-        numbers: Sequence[Int[Array, "rows columns"]],
+        depths: Sequence[Float[Array, "_ _"]],
+        numbers: Sequence[Integer[Array, "_ _"]],
     ) -> Float[Array, "height width"]:
         """Depth [m] along the camera's axis from the depths and the numbers of what is seen in `faces`."""
         depth = np.full(self.rays.shape[:2], np.nan, dtype=np.float32)
@@ -114,7 +114,7 @@ class PinholeCover:
             np.copyto(depth[patch.window], metres, where=patch.inside)
         return depth
 
-    def assemble_numbers(self, numbers: Sequence[Int[Array, "rows columns"]]) -> Int[Array, "height width"]:
+    def assemble_numbers(self, numbers: Sequence[Integer[Array, "_ _"]]) -> Integer[Array, "height width"]:
         """Numbers of what is seen from those of `faces`, each of the nearest pixel; 0 outside the lens."""
         result = np.zeros(self.rays.shape[:2], dtype=numbers[0].dtype)
         for patch, picture in zip(self.patches, numbers, strict=True):
@@ -123,7 +123,7 @@ class PinholeCover:
         return result
 
 
-def _uneven(number: Int[Array, "rows columns"]) -> UInt8[Array, "rows columns"]:
+def _uneven(number: Integer[Array, "rows columns"]) -> UInt8[Array, "rows columns"]:
     """Where a pixel's number is not that of its neighbours to the right, below, and both."""
     uneven = np.zeros(number.shape, dtype=np.uint8)
     one = number[:-1, :-1]
@@ -132,7 +132,7 @@ def _uneven(number: Int[Array, "rows columns"]) -> UInt8[Array, "rows columns"]:
 
 
 def _one_sided(
-    inverse: Float[Array, "rows columns"], number: Int[Array, "rows columns"], pixels: Float[Array, "n 2"]
+    inverse: Float[Array, "rows columns"], number: Integer[Array, "rows columns"], pixels: Float[Array, "n 2"]
 ) -> Float[Array, "n"]:
     """Inverse depth at pixels, continued from the nearest one along the body that is seen there."""
     rows, columns = inverse.shape
@@ -160,7 +160,7 @@ def _like(mask: Array, values: Array) -> Array:
     return mask if values.ndim == mask.ndim else mask[..., None]
 
 
-def _faces(rays: Float[Array, "rows columns 3"]) -> tuple[Int[Array, "rows columns"], list[SE3]]:
+def _faces(rays: Float[Array, "rows columns 3"]) -> tuple[Integer[Array, "rows columns"], list[SE3]]:
     """Which face each ray falls on (-1 where there is no ray), and cam_from_face of the faces."""
     seen = np.isfinite(rays[..., 2])
     with np.errstate(divide="ignore", invalid="ignore"):

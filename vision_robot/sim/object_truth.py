@@ -17,7 +17,7 @@ from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.canvas import Region
 from vision_robot.sim.cell import Cell
 from vision_robot.sim.outline import Moments, area_moments, clipped, outline_of, row_spans
-from vision_robot.types import Array, Bool, Float, Int
+from vision_robot.types import Array, Bool, Float, Integer
 
 __all__ = ["FINER", "ObjectTruth", "object_truth"]
 
@@ -25,7 +25,7 @@ FINER = 4
 LEAST_AREA_PX = 0.5
 """Less of a thing than this counts as unseen."""
 
-Finer: TypeAlias = Callable[[Region], Int[Array, "rows columns"]]
+Finer: TypeAlias = Callable[[Region], Integer[Array, "rows columns"]]
 
 
 @dataclass(frozen=True)
@@ -68,8 +68,8 @@ def object_truth(
     cell: Cell,
     camera: Camera,
     cam_from_object: SE3,
-    bodies: Int[Array, "height width"],
-    hides: Bool[Array, "bodies+1"],
+    bodies: Integer[Array, "height width"],
+    hides: Bool[Array, "numbers"],
     finer: Finer | None = None,
 ) -> ObjectTruth:
     """The truth about the cell's tracked things, seen in a picture with these `bodies`.
@@ -116,8 +116,8 @@ def _measure(
     table: dict[str, Array],
     i: int,
     whole: Float[Array, "m 2"],
-    bodies: Int[Array, "height width"],
-    hides: Bool[Array, "bodies+1"],
+    bodies: Integer[Array, "height width"],
+    hides: Bool[Array, "numbers"],
     finer: Finer | None,
 ) -> None:
     """Fill row i of the table from the outline."""
@@ -146,8 +146,8 @@ def _less_hidden(
     whole: Moments,
     box: Float[Array, "4"],
     polygon: Float[Array, "m 2"],
-    bodies: Int[Array, "height width"],
-    hides: Bool[Array, "bodies+1"],
+    bodies: Integer[Array, "height width"],
+    hides: Bool[Array, "numbers"],
     finer: Finer | None,
 ) -> tuple[Moments, Float[Array, "4"]]:
     """Moments and box of what is left of an outline when what is in front of it is taken away."""

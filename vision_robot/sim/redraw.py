@@ -5,7 +5,7 @@ import numpy as np
 from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.canvas import Region
 from vision_robot.sim.cell import Cell
-from vision_robot.sim.cell_model import FLOOR_BELOW_M, MOVING
+from vision_robot.sim.cell_names import FLOOR_BELOW_M, MOVING
 from vision_robot.types import Array, Float
 
 __all__ = ["MovingRegion"]

@@ -10,7 +10,7 @@ from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.canvas import Canvas, Region
 from vision_robot.sim.cover import PinholeCover
 from vision_robot.sim.gl import load_mujoco
-from vision_robot.types import Array, Float, Image, Int
+from vision_robot.types import Array, Float, Image, Int, Integer, UInt8
 
 __all__ = ["Renderer", "straight"]
 
@@ -91,7 +91,7 @@ class Renderer:
         hidden_groups: tuple[int, ...] = (),
         depth: bool = False,
         region: Region | None = None,
-    ) -> tuple[Int[Array, "height width"], Float[Array, "height width"] | None]:
+    ) -> tuple[Integer[Array, "height width"], Float[Array, "height width"] | None]:
         """The body seen at each pixel centre, from 1 (0: none), and depth [m] if asked for, in one draw.
 
         Geoms of `hidden_groups` are left out, which saves their time. The numbers are of the smallest
@@ -132,7 +132,7 @@ class Renderer:
         *,
         depth: bool,
         region: Region | None = None,
-    ) -> tuple[Int[Array, "height width"], Int[Array, "k 2"], Float[Array, "height width"] | None]:
+    ) -> tuple[Integer[Array, "height width"], Int[Array, "k 2"], Float[Array, "height width"] | None]:
         """Number at each pixel centre, object and type behind each number, depth if asked for."""
         canvas = self._canvas
         if straight(camera):
@@ -154,7 +154,7 @@ class Renderer:
         return number, canvas.objects(hidden_groups), metres
 
 
-def _upright(rgb: Image, *, grey: bool) -> Image:
+def _upright(rgb: UInt8[Array, "height width 3"], *, grey: bool) -> Image:
     # OpenGL's first row is the lowest.
     return cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY if grey else cv2.COLOR_RGB2BGR)[::-1]
 

@@ -8,9 +8,11 @@ import numpy as np
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import Camera, pixel_grid
 from vision_robot.sim.truth import TruthFrame
-from vision_robot.types import Array, Bool, Float, Int
+from vision_robot.types import Array, Bool, Float, Integer
 
 __all__ = ["TrueFlow", "true_flow"]
+
+ON_CENTRE_PX = 1e-3
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,7 @@ def true_flow(before: TruthFrame, after: TruthFrame) -> TrueFlow:
 
 def _motions(
     before: TruthFrame, after: TruthFrame
-) -> tuple[Bool[Array, "bodies+1"], Float[Array, "bodies+1 3 3"], Float[Array, "bodies+1 3"]]:
+) -> tuple[Bool[Array, "numbers"], Float[Array, "numbers 3 3"], Float[Array, "numbers 3"]]:
     """Which bodies move against the camera, and cam_after_from_cam_before of the points of each.
 
     Body 0 is what is infinitely far away: it moves as the camera does.
@@ -81,9 +83,9 @@ def _rays(camera: Camera) -> Float[Array, "pixels 3"]:
 def _moved(
     rays: Float[Array, "n 3"],
     depth: Float[Array, "n"],
-    R: Float[Array, "bodies+1 3 3"],
-    t: Float[Array, "bodies+1 3"],
-    body: Int[Array, "n"],
+    R: Float[Array, "numbers 3 3"],
+    t: Float[Array, "numbers 3"],
+    body: Integer[Array, "n"],
 ) -> Float[Array, "n 3"]:
     """Points at `depth` along the rays after their bodies' motions; those infinitely far away only turn."""
     moved = np.empty_like(rays)
@@ -99,8 +101,8 @@ def _moved(
 
 def _hidden(
     after: TruthFrame,
-    at: Int[Array, "n"],
-    body: Int[Array, "n"],
+    at: Integer[Array, "n"],
+    body: Integer[Array, "n"],
     flow: Float[Array, "n 2"],
     reach: Float[Array, "n"],
 ) -> Bool[Array, "n"]:
@@ -111,14 +113,16 @@ def _hidden(
     with np.errstate(invalid="ignore"):
         u, v = column + flow[:, 0], row + flow[:, 1]
         inside = (u >= -0.5) & (u <= width - 0.5) & (v >= -0.5) & (v <= height - 0.5)
-    left, top = (np.floor(np.where(inside, x, 0)).astype(np.intp) for x in (u, v))
+    u, v = np.where(inside, u, 0), np.where(inside, v, 0)
     # How far one pixel's width reaches at that distance: slanted surfaces differ by about so much.
     tolerance = np.abs(reach) / min(after.camera.fx, after.camera.fy)
     shown = np.zeros(len(at), dtype=bool)
     bodies, depths = after.bodies.ravel(), after.depth.ravel()
-    for du in (0, 1):
-        for dv in (0, 1):
-            there = np.clip(top + dv, 0, height - 1) * width + np.clip(left + du, 0, width - 1)
+    # The pixels next to it; one alone where the point lies on its centre.
+    for side in (np.floor(u + ON_CENTRE_PX), np.ceil(u - ON_CENTRE_PX)):
+        for line in (np.floor(v + ON_CENTRE_PX), np.ceil(v - ON_CENTRE_PX)):
+            there = np.clip(line, 0, height - 1) * width + np.clip(side, 0, width - 1)
+            there = there.astype(np.intp)
             with np.errstate(invalid="ignore"):
                 near = np.abs(depths[there] - reach) <= tolerance
             shown |= (bodies[there] == body) & (near | (body == 0))

@@ -10,11 +10,11 @@ from vision_robot.geometry import SE3, Camera
 from vision_robot.sim.canvas import Region
 from vision_robot.sim.cell import Cell
 from vision_robot.sim.cell_design import StationCamera
-from vision_robot.sim.cell_model import BACKGROUND, MOVING
+from vision_robot.sim.cell_names import BACKGROUND, MOVING
 from vision_robot.sim.object_truth import FINER, ObjectTruth, object_truth
 from vision_robot.sim.redraw import MovingRegion
 from vision_robot.sim.render import Renderer, straight
-from vision_robot.types import Array, Float, Image, Int
+from vision_robot.types import Array, Float, Image, Integer
 
 __all__ = ["TruthFrame", "TruthRenderer"]
 
@@ -31,9 +31,9 @@ class TruthFrame:
     cam_from_station: SE3
     image: Image
     """Blue-green-red, as an ideal sensor would see it."""
-    bodies: Int[Array, "height width"]
+    bodies: Integer[Array, "height width"]
     """MuJoCo's body at each pixel centre, counted from 1; 0: nothing that was drawn."""
-    thing_of_body: Int[Array, "bodies+1"]
+    thing_of_body: Integer[Array, "numbers"]
     """Id of the tracked thing behind each number of `bodies`; 0: none."""
     cam_from_body: SE3
     """Pose of every body of the model, a batch; `true_flow` compares two of them."""
@@ -42,7 +42,7 @@ class TruthFrame:
     """Distance along the optical axis [m] at pixel centres; infinite where nothing is, NaN outside a lens."""
 
     @property
-    def ids(self) -> Int[Array, "height width"]:
+    def ids(self) -> Integer[Array, "height width"]:
         """Id of the tracked thing (its place in `Cell.tracked`, from 1) at each pixel centre, 0 for none."""
         return self.thing_of_body[self.bodies]
 
@@ -131,11 +131,11 @@ class TruthRenderer:
 
     def _finer(
         self, base_from_cam: SE3, hidden_groups: tuple[int, ...]
-    ) -> Callable[[Region], Int[Array, "rows columns"]]:
+    ) -> Callable[[Region], Integer[Array, "rows columns"]]:
         """What draws a region of `bodies` with FINER times as many rows and columns."""
         fine = _finer(self.view.camera)
 
-        def draw(region: Region) -> Int[Array, "rows columns"]:
+        def draw(region: Region) -> Integer[Array, "rows columns"]:
             left, top, columns, rows = (FINER * value for value in region)
             part = (left, top, columns, rows)
             return self._renderer.bodies(fine, base_from_cam, hidden_groups=hidden_groups, region=part)[0]

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from vision_robot.sim.cell_model import quaternion
 from vision_robot.sim.object_truth import ObjectTruth
+from vision_robot.sim.placing import quaternion
 from vision_robot.tracks import Tracks
 from vision_robot.types import Array, Float
 
