@@ -20,6 +20,9 @@ CHECKED = [
     "vision_robot.extrinsics",
 ]
 CHECKED = ["vision_robot.geometry", "vision_robot.formats", "vision_robot.calibrate", "vision_robot.sim"]
+    "vision_robot.dataset",
+    "vision_robot.sim",
+]
 
 # Annotations mean what they say, except that an int may stand where a float is asked for (PEP 484).
 strict = beartype.beartype(conf=beartype.BeartypeConf(is_pep484_tower=True))

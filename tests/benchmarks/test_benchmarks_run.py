@@ -14,6 +14,9 @@ ROOT = Path(__file__).parents[2]
 @pytest.mark.parametrize("name", ["coverage", "measure", "next_view", "refinement", "triangulation"])
 @pytest.mark.parametrize("name", ["coverage", "next_view", "refinement", "truth_accuracy", "truth_speed"])
 @pytest.mark.parametrize("name", ["coverage", "next_view", "refinement", "ik_export"])
+@pytest.mark.parametrize(
+    "name", ["coverage", "next_view", "refinement", "synth_speed", "truth_accuracy", "truth_speed"]
+)
 def test_it_runs(name):
     script = ROOT / "benchmarks" / f"{name}.py"
     done = subprocess.run(

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 
 from vision_robot.errors import BadParameter, BadTable
-from vision_robot.types import Array, Bool, Int
+from vision_robot.types import Array, Bool, Int, Integer
 
 __all__ = ["decode_runs", "encode_ids", "encode_runs", "read_ids"]
 
@@ -19,7 +19,7 @@ FASTEST = [
 ]
 
 
-def encode_ids(ids: Int[Array, "height width"]) -> bytes:
+def encode_ids(ids: Integer[Array, "height width"]) -> bytes:
     """A PNG whose grey value is the id, of 8 bits, or 16 where an id needs them."""
     largest, least = int(ids.max(initial=0)), int(ids.min(initial=0))
     if least < 0 or largest > 65535:

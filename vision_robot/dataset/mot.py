@@ -64,6 +64,8 @@ def read_mot(path: Path, times_s: Float[Array, "frames"]) -> tuple[Tracks, Track
     rows, lines = read_numbers(path, 6, 10)
     for i, line in enumerate(lines):
         frame, id_, _, _, width, height = rows[i, :6]
+        if not np.isfinite(rows[i, :6]).all():
+            raise BadTable(path, f"line {line}: frame, id and box must be finite numbers")
         if not (frame == int(frame) and id_ == int(id_)):
             raise BadTable(path, f"line {line}: frame {frame:g} and id {id_:g} must be whole numbers")
         if not 1 <= frame <= len(times_s):

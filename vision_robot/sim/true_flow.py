@@ -41,15 +41,15 @@ def true_flow(before: TruthFrame, after: TruthFrame) -> TrueFlow:
     body = before.bodies.ravel()
     at = np.flatnonzero(moves[body])
     mine = body[at]
-    moved = _moved(_rays(camera)[at], before.depth.ravel()[at], R, t, mine)
+    moved = _moved(_rays(camera)[:, at], before.depth.ravel()[at], R, t, mine)
     flow = np.zeros((height * width, 2), dtype=np.float32)
     row, column = np.divmod(at, width)
-    flow[at] = camera.project(moved) - np.stack([column, row], axis=-1)
+    flow[at] = camera.project(moved.T) - np.stack([column, row], axis=-1)
     unseen = np.isnan(before.depth.ravel())
     if unseen.any():
         flow[unseen] = np.nan
     reach = before.depth.ravel().copy()
-    reach[at] = moved[:, 2]
+    reach[at] = moved[2]
     # Where nothing moves and the same body is still seen, nothing needs to be asked.
     asked = np.flatnonzero((moves[body] | (after.bodies.ravel() != body)) & ~unseen)
     hidden = unseen
@@ -73,29 +73,30 @@ def _motions(
 
 
 @lru_cache(maxsize=2)
-def _rays(camera: Camera) -> Float[Array, "pixels 3"]:
+def _rays(camera: Camera) -> Float[Array, "3 pixels"]:
     """Directions through the pixels' centres, 1 along the optical axis, row by row."""
     rays = camera.unproject(pixel_grid(camera.width, camera.height)).reshape(-1, 3)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return rays / rays[:, 2:]
+        return np.ascontiguousarray((rays / rays[:, 2:]).T)
 
 
 def _moved(
-    rays: Float[Array, "n 3"],
+    rays: Float[Array, "3 n"],
     depth: Float[Array, "n"],
     R: Float[Array, "numbers 3 3"],
     t: Float[Array, "numbers 3"],
     body: Integer[Array, "n"],
-) -> Float[Array, "n 3"]:
+) -> Float[Array, "3 n"]:
     """Points at `depth` along the rays after their bodies' motions; those infinitely far away only turn."""
     moved = np.empty_like(rays)
     for one in np.flatnonzero(np.bincount(body, minlength=1)).tolist():
-        mine = body == one
-        points = rays[mine]
-        if one:
-            moved[mine] = (points * depth[mine, None]) @ R[one].T + t[one]
-        else:
-            moved[mine] = 1e9 * points @ R[one].T
+        mine = np.flatnonzero(body == one)
+        far = one == 0
+        x, y, z = rays[:, mine] * (1e9 if far else depth[mine])
+        for i in range(3):
+            # Written out: for so thin a matrix product BLAS wakes all cores, which other workers need.
+            turned = R[one, i, 0] * x + R[one, i, 1] * y + R[one, i, 2] * z
+            moved[i, mine] = turned if far else turned + t[one, i]
     return moved
 
 
@@ -116,14 +117,20 @@ def _hidden(
     u, v = np.where(inside, u, 0), np.where(inside, v, 0)
     # How far one pixel's width reaches at that distance: slanted surfaces differ by about so much.
     tolerance = np.abs(reach) / min(after.camera.fx, after.camera.fy)
-    shown = np.zeros(len(at), dtype=bool)
     bodies, depths = after.bodies.ravel(), after.depth.ravel()
-    # The pixels next to it; one alone where the point lies on its centre.
+
+    def seen(side: Float[Array, "k"], line: Float[Array, "k"], of: Integer[Array, "k"]) -> Bool[Array, "k"]:
+        there = np.clip(line, 0, height - 1) * width + np.clip(side, 0, width - 1)
+        there = there.astype(np.intp)
+        with np.errstate(invalid="ignore"):
+            near = np.abs(depths[there] - reach[of]) <= tolerance[of]
+        return (bodies[there] == body[of]) & (near | (body[of] == 0))
+
+    # The pixels next to it, one alone where the point lies on its centre; for most the nearest will do.
+    shown = seen(np.rint(u), np.rint(v), np.arange(len(at)))
+    left = np.flatnonzero(inside & ~shown)
+    u, v = u[left], v[left]
     for side in (np.floor(u + ON_CENTRE_PX), np.ceil(u - ON_CENTRE_PX)):
         for line in (np.floor(v + ON_CENTRE_PX), np.ceil(v - ON_CENTRE_PX)):
-            there = np.clip(line, 0, height - 1) * width + np.clip(side, 0, width - 1)
-            there = there.astype(np.intp)
-            with np.errstate(invalid="ignore"):
-                near = np.abs(depths[there] - reach) <= tolerance
-            shown |= (bodies[there] == body) & (near | (body == 0))
+            shown[left] |= seen(side, line, left)
     return ~(inside & shown)

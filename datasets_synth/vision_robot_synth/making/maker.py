@@ -91,7 +91,8 @@ class Maker:
         wanted = delivered and scene.sensor.delivered(frame, scene.seed) == frame
         middle, exposures, truth = scene.exposures // 2, [], None
         for i, time in enumerate(self._stage.moments(frame)):
-            pose = scene.shake.cam_from_station(scene.view.cam_from_station, time)
+            # A camera that stands still need not draw again what cannot have changed.
+            pose = scene.shake.cam_from_station(scene.view.cam_from_station, time) if scene.shake else None
             if i == middle:
                 truth = eye.frame(pose)
                 exposures.append(truth.image)

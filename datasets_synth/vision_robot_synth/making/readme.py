@@ -30,7 +30,7 @@ Objects: {objects}.
 ROWS = {
     "masks": "`{pattern}` ... | id of the object at each pixel, 0 for none",
     "coco": "`{pattern}` | the same masks as COCO keeps them (run lengths)",
-    "flow": "`{pattern}` ... | true flow to the frame {step} later: KITTI's 16 bits (blue 2: hidden), or .flo",
+    "flow": "`{pattern}` ... | true flow to the frame {step} later: KITTI's 16 bits, blue 2: hidden",
     "mot": "`{pattern}`, `seqinfo.ini` | MOTChallenge: whole boxes; last column: visibility",
     "camera": "`{pattern}` | where the station stands before the moving camera",
 }

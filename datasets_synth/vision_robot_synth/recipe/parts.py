@@ -108,7 +108,7 @@ class ArmPart:
     task: Annotated[
         str,
         Choice(("approach", "pick", "rest")),
-        "approach: comes down to the thing `towards`; pick: and takes it away; rest: stands still",
+        "approach: comes down to the thing `towards`; pick: and puts it down aside; rest: stands still",
     ] = "approach"
     towards: Annotated[str, Text(), "name of the thing it goes to; else the first"] = ""
     speed_mm_s: Annotated[Draw, Number(5, 2000), "speed of its tool"] = 150.0

@@ -29,9 +29,9 @@ class Area:
         pixels = middle + (np.asarray(shares, dtype=float) - 0.5) * self.part * (camera.width, camera.height)
         return plane_from_pixels(camera, self.view.cam_from_station, pixels)
 
-    def somewhere(self, rng: np.random.Generator) -> Float[Array, "2"]:
-        """A place anywhere in the area."""
-        return self.places(rng.random((1, 2)))[0]
+    def somewhere(self, rng: np.random.Generator, count: int) -> Float[Array, "count 2"]:
+        """So many places anywhere in the area."""
+        return self.places(rng.random((count, 2)))
 
     def edge(self, share: float) -> Float[Array, "2"]:
         """A place on the ellipse in the area's border, `share` of the way round."""

@@ -13,7 +13,7 @@ from vision_robot_synth.scene.traffic import STEP_S, Footprint, Traffic
 
 __all__ = ["MOTIONS", "Motion", "Mover"]
 
-TRIES = 60
+TRIES = 40
 """Places tried before a thing waits, or is put down where it is not clear."""
 WAIT_S = 0.5
 LOOK_AHEAD_S = 1.5
@@ -138,23 +138,22 @@ def _four(place: Float[Array, "4"]) -> tuple[float, float, float, float]:
 def _start(mover: Mover) -> tuple[float, float, float, float]:
     """A place that is clear all the time, or where none is found the one that is clear the longest."""
     steps = np.arange(len(mover.traffic.times_s))
-    tried = np.array(
-        [[*mover.area.somewhere(mover.rng), mover.footprint.above_m, _yaw(mover)] for _ in range(TRIES)]
-    )
+    tried = _anywhere(mover)
     clear = mover.traffic.free(mover.footprint, np.repeat(tried[:, None], len(steps), axis=1), steps)
     return _four(tried[int(np.argmax(clear.mean(axis=1)))])
 
 
-def _yaw(mover: Mover) -> float:
-    return float(mover.rng.uniform(-np.pi, np.pi))
+def _anywhere(mover: Mover) -> Float[Array, "tries 4"]:
+    """Places to choose from."""
+    yaw = mover.rng.uniform(-np.pi, np.pi, TRIES)
+    above = np.full(TRIES, mover.footprint.above_m)
+    return np.column_stack([mover.area.somewhere(mover.rng, TRIES), above, yaw])
 
 
 def _wander(mover: Mover, pause_s: float) -> Path:
     """Leg by leg to places whose whole way is clear; waits where there is none."""
     ahead = np.arange(int(LOOK_AHEAD_S / STEP_S) + 1)
-    tried = np.array(
-        [[*mover.area.somewhere(mover.rng), mover.footprint.above_m, _yaw(mover)] for _ in range(TRIES)]
-    )
+    tried = _anywhere(mover)
     clear = mover.traffic.free(mover.footprint, np.repeat(tried[:, None], len(ahead), axis=1), ahead)
     times, places = [0.0], [tried[int(np.argmax(clear.mean(axis=1)))]]
     while times[-1] < mover.traffic.duration_s:
@@ -174,7 +173,8 @@ def _leg(
 
     Where none is, the way that is clear the longest; staying is one of the ways.
     """
-    goals = np.array([[*mover.area.somewhere(mover.rng), place[2], place[3]] for _ in range(TRIES)])
+    goals = np.tile(place, (TRIES, 1))
+    goals[:, :2] = mover.area.somewhere(mover.rng, TRIES)
     goals[TRIES // 2 :, :2] = place[:2] + 0.3 * (
         goals[TRIES // 2 :, :2] - place[:2]
     )  # short ways are clear more often

@@ -11,12 +11,14 @@ from vision_robot.types import Array, Float
 __all__ = ["ArmCourse", "course_of", "joints_at"]
 
 HOVER_M = 0.10
-LIFT_M = 0.12
+LIFT_M = 0.08
+ASIDE_M = 0.14
+"""How far from its place a picked thing is put down."""
 SHORTEST_S, GRIP_S = 0.4, 1.2
 """Least time of a move; time in which the fingers close and have hold."""
 SQUEEZE_M = 0.006
 """The servos are told to close so much further than the thing is wide."""
-STEPS = 60
+STEPS = 40
 STARTS = 24
 NEAR_M = 5e-4
 NUDGE = 1e-5
@@ -53,16 +55,24 @@ def course_of(
     stops = [(start, wide), (hover, wide), (grip, wide)]
     if task == "pick":
         closed = max(width_m - SQUEEZE_M, cell.opening_limits_m[0])
-        lifted = joints_at(cell, target + np.array([0, 0, LIFT_M]), across, grip)
-        aside = joints_at(
-            cell, target + np.array([0.0, 0.14 if target[1] < 0 else -0.14, LIFT_M]), across, lifted
-        )
-        stops += [(grip, closed), (lifted, closed), (aside, closed)]
+        goal = target + np.array([0.0, ASIDE_M if target[1] < 0 else -ASIDE_M, 0.0])
+        up = np.array([0, 0, LIFT_M])
+        lifted = joints_at(cell, target + up, across, grip)
+        aside = joints_at(cell, goal + up, across, lifted)
+        put = joints_at(cell, goal, across, aside)
+        stops += [
+            (grip, closed),
+            (lifted, closed),
+            (aside, closed),
+            (put, closed),
+            (put, wide),
+            (aside, wide),
+        ]
     times = [0.0]
     places = [_tool(cell, joints) for joints, _ in stops]
     for i in range(1, len(stops)):
         way = float(np.linalg.norm(places[i] - places[i - 1]))
-        slow = 0.5 if i == 2 else 1.0  # the last of the way down is careful
+        slow = 0.5 if i in (2, 6) else 1.0  # ways down are careful
         times.append(times[-1] + (GRIP_S if way == 0 else max(way / (slow * speed_m_s), SHORTEST_S)))
     cell.reset()
     joints = np.stack([joints for joints, _ in stops])
@@ -74,21 +84,18 @@ def joints_at(
 ) -> Float[Array, "n"]:
     """Joint values that bring the tool there, pointing down, its x along `yaw_rad` in {S} or against it.
 
-    Damped Gauss-Newton on the cell's own arm from several starts; the solution nearest to `near` is
-    taken. Raises NoConvergence where the arm does not reach.
+    Damped Gauss-Newton on the cell's own arm, from `near` and, where that leads nowhere, from anywhere.
+    Raises NoConvergence where the arm does not reach.
     """
     rng = np.random.default_rng(0)
     low, high = cell.joint_limits.T
-    found = []
     for i in range(STARTS):
         start = near if i == 0 else low + rng.random(len(low)) * (high - low)
-        for yaw in (yaw_rad, yaw_rad + np.pi):
-            q = _descend(cell, place, yaw, start)
-            if q is not None:
-                found.append(q)
-    if not found:
-        raise NoConvergence(f"the arm does not reach {np.round(place, 3).tolist()} m in the station frame")
-    return min(found, key=lambda q: float(np.abs(q - near).max()))
+        found = [_descend(cell, place, yaw, start) for yaw in (yaw_rad, yaw_rad + np.pi)]
+        reached = [q for q in found if q is not None]
+        if reached:
+            return min(reached, key=lambda q: float(np.abs(q - near).max()))
+    raise NoConvergence(f"the arm does not reach {np.round(place, 3).tolist()} m in the station frame")
 
 
 def _descend(

@@ -54,12 +54,18 @@ class Traffic:
         """Which of these places, each at its own step of time, are clear of all that is planned."""
         shape = places.shape[:-1]
         mine, when = footprint.ends(places.reshape(-1, 4)), np.broadcast_to(steps, shape).ravel()
+        middle = mine.mean(axis=1)
         clear = np.ones(len(mine), dtype=bool)
         for other, ends in self.planned:
             if abs(other.above_m - footprint.above_m) > 1e-9:
                 continue
+            theirs = ends[np.minimum(when, len(ends) - 1)]
             apart = (footprint.width_m + other.width_m) / 2 + CLEARANCE_M
-            clear &= _distance(mine, ends[np.minimum(when, len(ends) - 1)]) > apart
+            # Most are so far away that their lengths do not matter.
+            reach = (footprint.length_m + other.length_m) / 2 + apart
+            far = ((theirs.mean(axis=1) - middle) ** 2).sum(axis=1) > reach**2
+            asked = np.flatnonzero(clear & ~far)
+            clear[asked] = _distance(mine[asked], theirs[asked]) > apart
         return clear.reshape(shape)
 
 
