@@ -2,11 +2,13 @@
 
 A command's file is imported when the command runs, so that `vr --help` answers at once. To add
 one: write `<name>.py` beside this file with a function of plain Typer parameters, and a line here.
+Commands of one family share a first word, `vr extrinsics hand-eye`: a `Group` holds them.
 """
 
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-__all__ = ["COMMANDS", "Command"]
+__all__ = ["COMMANDS", "Command", "Group", "every_command"]
 
 
 class Command(NamedTuple):
@@ -17,7 +19,21 @@ class Command(NamedTuple):
     help: str
 
 
-COMMANDS: dict[str, Command] = {
+class Group(NamedTuple):
+    """Commands that share their first word."""
+
+    commands: Mapping[str, Command]
+    help: str
+
+
+EXTRINSICS: dict[str, Command] = {
+    "hand-eye": Command(
+        "vision_robot_cli.hand_eye:hand_eye",
+        "Where the camera sits on the arm, or beside it, from photos of a board and the arm's poses.",
+    ),
+}
+
+COMMANDS: dict[str, Command | Group] = {
     "board": Command(
         "vision_robot_cli.board:board",
         "Write a printable calibration target to scale: PDF, SVG or PNG.",
@@ -34,4 +50,17 @@ COMMANDS: dict[str, Command] = {
         "vision_robot_cli.doctor:doctor",
         "What works on this machine: versions, OpenGL, video, GPU, compiler; and how to mend the rest.",
     ),
+    "extrinsics": Group(
+        EXTRINSICS,
+        "Where the camera is: on an arm, over a table, beside other cameras.",
+    ),
 }
+
+
+def every_command() -> Iterator[tuple[tuple[str, ...], Command]]:
+    """All commands with the words that call them, those of groups included."""
+    for name, found in COMMANDS.items():
+        if isinstance(found, Group):
+            yield from (((name, inner), command) for inner, command in found.commands.items())
+        else:
+            yield (name,), found

@@ -7,13 +7,13 @@
 import importlib
 import os
 import sys
-from collections.abc import Callable, Sequence
-from typing import Annotated, Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Annotated, Any, ClassVar
 
 import typer
 from typer.core import TyperGroup
 
-from vision_robot_cli.commands import COMMANDS
+from vision_robot_cli.commands import COMMANDS, Command, Group
 from vision_robot_cli.output import LimitMissed
 
 __all__ = ["app", "main", "run"]
@@ -23,22 +23,25 @@ DEBUG_HELP = f"{DEBUG}, with any command: show the traceback of an error."
 
 
 class LazyGroup(TyperGroup):
-    """Commands from the registry, each imported when it is run."""
+    """Commands from a registry, each imported when it is run."""
+
+    registry: ClassVar[Mapping[str, Command | Group]] = COMMANDS
 
     def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 - click's signature
         """Names, in the registry's order."""
-        return list(COMMANDS)
+        return list(self.registry)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002
         """The command, built from its function; None where there is no such name."""
-        if cmd_name not in COMMANDS:
-            return None
-        return command_of(cmd_name, load(COMMANDS[cmd_name].target))
+        found = self.registry.get(cmd_name)
+        if isinstance(found, Group):
+            return group_of(cmd_name, found)
+        return command_of(cmd_name, load(found.target)) if found else None
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002
         """The list in `vr --help`, without importing any command."""
         with formatter.section("Commands"):
-            formatter.write_dl([(name, command.help) for name, command in COMMANDS.items()])
+            formatter.write_dl([(name, command.help) for name, command in self.registry.items()])
 
 
 def load(target: str) -> Callable[..., Any]:
@@ -52,6 +55,27 @@ def command_of(name: str, function: Callable[..., Any]) -> Any:
     single = typer.Typer(add_completion=False, rich_markup_mode=None)
     single.command(name, epilog=DEBUG_HELP)(function)
     return typer.main.get_command(single)
+
+
+def group_of(name: str, group: Group) -> Any:
+    """The commands of a group under their common first word; the word alone shows what there is."""
+
+    def alone(context: typer.Context) -> None:
+        if context.invoked_subcommand is None:
+            print(context.get_help())
+            raise typer.Exit
+
+    family = typer.Typer(
+        name=name,
+        cls=type(f"LazyGroup_{name}", (LazyGroup,), {"registry": group.commands}),
+        add_completion=False,
+        rich_markup_mode=None,
+        invoke_without_command=True,
+        help=group.help,
+        epilog=DEBUG_HELP,
+    )
+    family.callback()(alone)
+    return typer.main.get_command(family)
 
 
 app = typer.Typer(

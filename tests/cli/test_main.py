@@ -71,13 +71,28 @@ def test_help_lists_every_command_with_its_line():
         assert f"{name} {command.help}" in shown
 
 
-@pytest.mark.parametrize("name", commands.COMMANDS)
-def test_every_command_exists_and_shows_an_example(name):
-    function = main.load(commands.COMMANDS[name].target)
-    assert f"vr {name}" in (function.__doc__ or ""), f"the docstring of {name} holds no example"
-    ended = vr(name, "--help")
+@pytest.mark.parametrize(("words", "command"), [*commands.every_command()])
+def test_every_command_exists_and_shows_an_example(words, command):
+    example = " ".join(["vr", *words])
+    assert example in (main.load(command.target).__doc__ or ""), (
+        f"the docstring of {example} holds no example"
+    )
+    ended = vr(*words, "--help")
     assert ended.returncode == 0
     assert "--debug" in ended.stdout
+
+
+GROUPS = {name: found for name, found in commands.COMMANDS.items() if isinstance(found, commands.Group)}
+
+
+@pytest.mark.parametrize("name", GROUPS)
+def test_a_group_alone_lists_its_commands(name):
+    ended = vr(name)
+    assert ended.returncode == 0
+    assert ended.stdout == vr(name, "--help").stdout
+    shown = " ".join(ended.stdout.split())
+    for inner, command in GROUPS[name].commands.items():
+        assert f"{inner} {command.help}" in shown
 
 
 def test_version():
@@ -86,7 +101,9 @@ def test_version():
     assert vr("--version").stdout == f"vr {vision_robot.__version__}\n"
 
 
-@pytest.mark.parametrize("arguments", [["bogus"], ["--bogus"], ["doctor", "--bogus"], ["doctor", "bogus"]])
+@pytest.mark.parametrize(
+    "arguments", [["bogus"], ["--bogus"], ["doctor", "--bogus"], ["doctor", "bogus"], ["extrinsics", "bogus"]]
+)
 def test_wrong_usage_is_one_line_and_2(arguments):
     ended = vr(*arguments)
     assert ended.returncode == 2
