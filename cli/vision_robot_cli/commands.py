@@ -33,6 +33,21 @@ EXTRINSICS: dict[str, Command] = {
     ),
 }
 
+TRACK: dict[str, Command] = {
+    "video": Command(
+        "vision_robot_cli.track:video",
+        "Objects in a video: tracks as a table, an overlay, a report.",
+    ),
+    "camera": Command(
+        "vision_robot_cli.track:camera",
+        "The same before a camera, until Ctrl-C.",
+    ),
+    "pick": Command(
+        "vision_robot_cli.track_pick:pick",
+        "Choose a colour to track, and see its mask.",
+    ),
+}
+
 COMMANDS: dict[str, Command | Group] = {
     "board": Command(
         "vision_robot_cli.board:board",
@@ -53,6 +68,10 @@ COMMANDS: dict[str, Command | Group] = {
     "extrinsics": Group(
         EXTRINSICS,
         "Where the camera is: on an arm, over a table, beside other cameras.",
+    ),
+    "track": Group(
+        TRACK,
+        "Where objects are, how they lie, how fast they move; in pixels and millimetres.",
     ),
 }
 
