@@ -1,6 +1,5 @@
 """Drawings of tracks: paths in the picture and on the plane, places, speeds and areas over time."""
 
-from base64 import b64encode
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -8,6 +7,7 @@ import numpy as np
 
 from vision_robot.report.figure import WIDTH_IN, draw, view_colours
 from vision_robot.report.page import Figure
+from vision_robot.report.picture_axes import PLATE
 from vision_robot.track.history import Path
 from vision_robot.types import Array, Float, Image
 
@@ -16,36 +16,45 @@ if TYPE_CHECKING:
 
 __all__ = ["area_plot", "path_figure", "path_picture", "place_plots", "speed_plot"]
 
-PICTURE_PX = 900
-"""Width of the picture with the paths."""
+PICTURE_PX = 480
+"""Width of the frame under the paths: it is only there to find one's way."""
 
 MOST_NAMED = 12
 """Objects named in a drawing; with more, their names are only clutter."""
 
 
-def path_picture(first: Image, paths: Sequence[Path]) -> tuple[str, str, str]:
-    """The first frame with all paths on it: data URI, what it shows, caption."""
+def path_picture(first: Image, paths: Sequence[Path]) -> Figure:
+    """All paths over the first frame."""
     import cv2
 
     from vision_robot.track.admission import Admission
 
     image = Admission().converted(first)
-    scale = min(1.0, PICTURE_PX / image.shape[1])
-    size = (round(image.shape[1] * scale), round(image.shape[0] * scale))
+    height, width = image.shape[:2]
+    scale = min(1.0, PICTURE_PX / width)
+    size = (round(width * scale), round(height * scale))
     grey = cv2.cvtColor(cv2.resize(image, size, interpolation=cv2.INTER_AREA), cv2.COLOR_BGR2GRAY)
-    # Pale, so that the paths stand out.
-    canvas = cv2.cvtColor((128 + grey // 2).astype(np.uint8), cv2.COLOR_GRAY2BGR)
-    for path, colour in zip(paths, view_colours(len(paths)), strict=True):
-        bgr = tuple(int(colour[i : i + 2], 16) for i in (5, 3, 1))
-        table = path.table
-        places = (np.stack([table["u_px"], table["v_px"]], axis=1) + 0.5) * scale - 0.5
-        cv2.polylines(canvas, [np.rint(8 * places).astype(np.int32)], False, bgr, 2, cv2.LINE_AA, 3)
-        u, v = np.rint(places[-1]).astype(int).tolist()
-        cv2.circle(canvas, (u, v), 4, bgr, -1, cv2.LINE_AA)
-        cv2.putText(canvas, str(path.id), (u + 6, v - 5), cv2.FONT_HERSHEY_SIMPLEX, 0.5, bgr, 1, cv2.LINE_AA)
-    _, data = cv2.imencode(".jpg", canvas, [cv2.IMWRITE_JPEG_QUALITY, 82])
-    uri = "data:image/jpeg;base64," + b64encode(data.tobytes()).decode()
-    return uri, "Paths of the objects over the first frame", f"{len(paths)} paths over the first frame."
+
+    def paint(canvas: "Canvas") -> None:
+        axes = canvas.add_subplot()
+        # Pale, so that the paths stand out.
+        axes.imshow(
+            128 + grey // 2, cmap="gray", vmin=0, vmax=255, extent=(-0.5, width - 0.5, height - 0.5, -0.5)
+        )
+        for path, colour in zip(paths, view_colours(len(paths)), strict=True):
+            table = path.table
+            axes.plot(table["u_px"], table["v_px"], color=colour)
+            axes.text(
+                table["u_px"][-1], table["v_px"][-1], str(path.id), color=colour, bbox=PLATE, fontsize=7
+            )
+        axes.set_xlim(-0.5, width - 0.5)
+        axes.set_ylim(height - 0.5, -0.5)
+        axes.set_xlabel("u [px]")
+        axes.set_ylabel("v [px]")
+
+    high = 0.48 + min(0.87 * WIDTH_IN * height / width, 1.4 * WIDTH_IN)
+    caption = f"{len(paths)} paths over the first frame."
+    return Figure(draw(paint, height_in=high), "Paths of the objects over the first frame", caption)
 
 
 def path_figure(paths: Sequence[Path]) -> Figure:

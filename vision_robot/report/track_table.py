@@ -23,7 +23,7 @@ def track_table(history: History, *, metric: bool) -> Table:
         speed = np.hypot(table[rate[0]], table[rate[1]])
         speed = speed[np.isfinite(speed)]
         turned = table["yaw_deg"][np.isfinite(table["yaw_deg"])]
-        first, last = ((compact(table[one][k], 4) for one in place) for k in (0, -1))
+        first, last = ([compact(table[one][k], 4) for one in place] for k in (0, -1))
         rows.append(
             (
                 str(path.id),

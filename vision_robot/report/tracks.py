@@ -1,15 +1,15 @@
 """The page of a tracked video."""
 
+from pathlib import PurePath
+
 import numpy as np
 
 from vision_robot.report.page import (
     Facts,
     Figures,
     Footer,
-    Gallery,
     Page,
     Paragraph,
-    Picture,
     Remarks,
     Section,
 )
@@ -42,14 +42,12 @@ def tracks_page(session: Session, history: History, first: Image, source: str, *
     sections = [Section("Result", (_facts(session, history), Remarks(session.remarks())))]
     if paths:
         drawn = f" The {len(paths)} seen longest are drawn." if len(paths) < len(history.paths) else ""
-        picture = Gallery((Picture(*path_picture(first, paths)),))
-        sections.append(Section("Paths", (picture, Paragraph(ABOUT_PATHS + drawn))))
-        if metric:
-            sections.append(Section("On the plane", (Figures((path_figure(paths),)),)))
+        pictures = (path_picture(first, paths), *((path_figure(paths),) if metric else ()))
+        sections.append(Section("Paths", (Figures(pictures), Paragraph(ABOUT_PATHS + drawn))))
         plots = (*place_plots(paths, metric=metric), speed_plot(paths, metric=metric), area_plot(paths))
         sections.append(Section("Over time", (Figures(plots),)))
         sections.append(Section("Objects", (track_table(history, metric=metric),)))
-    seen = f"{session.objects} objects in {session.frames} frames of {source}"
+    seen = f"{session.objects} objects in {session.frames} frames of {PurePath(source).name}"
     summary = f"{seen}, by tracker {session.tracker.name}."
     return Page("Tracks", summary, tuple(sections), Footer(versions(), None, command))
 

@@ -179,7 +179,7 @@ class Follower:
         # A blob that has just lost or won a part of its area has its centroid elsewhere.
         change = np.abs(np.log(seen.area_px / self._lives.area[track]))
         sigma = _sigma(seen.area_px) + PART_OF_SIZE * np.sqrt(seen.area_px) * np.clip(change - 0.05, 0, 2)
-        after = before.updated(seen.centroid_px, sigma, learn=self._lives.hits[track] > 1)
+        after = before.updated(seen.centroid_px, sigma, dt, learn=self._lives.hits[track] > 1)
         for name in ("position", "velocity", "covariance", "acceleration"):
             getattr(self._motion, name)[track] = getattr(after, name)
         life = self._lives

@@ -19,6 +19,9 @@ GATE = 13.82
 LEARNING = 0.15
 """How fast a track's acceleration follows its surprises."""
 
+KNOCK = 4.0
+"""Squared miss over its variance, per axis, from which a track has been knocked."""
+
 FASTEST_STEP = 3.0
 """Largest factor on the acceleration's variance in one frame."""
 
@@ -78,17 +81,27 @@ class Motion:
         """Twice the negative log likelihood, up to a constant: what an assignment should make least."""
         return distance + 2 * np.log(self._spread(sigma_px[None]))
 
-    def updated(self, seen: Float[Array, "n 2"], sigma_px: Float[Array, "n"], *, learn: Array) -> "Motion":
-        """Each track corrected by where it was seen; `learn` tells whose acceleration is to follow."""
-        spread = self.covariance[:, 0, 0] + sigma_px**2
-        gain = self.covariance[:, :, 0] / spread[:, None]
+    def updated(
+        self, seen: Float[Array, "n 2"], sigma_px: Float[Array, "n"], dt: float, *, learn: Array
+    ) -> "Motion":
+        """Each track corrected by where it was seen, `dt` seconds after it was predicted from.
+
+        `learn` tells whose acceleration is to follow its surprises. A miss that noise does not explain is
+        taken for a knock: the velocity before it is worth nothing.
+        """
         missed = seen - self.position
-        surprise = (missed**2).sum(axis=1) / (2 * spread)
+        square = (missed**2).sum(axis=1) / 2
+        surprise = square / (self.covariance[:, 0, 0] + sigma_px**2)
+        knock = np.where(surprise > KNOCK, square, 0.0)[:, None, None]
+        step = np.array([[1.0, 1 / dt], [1 / dt, 1 / dt**2]]) if dt > 0 else np.zeros((2, 2))
+        covariance = self.covariance + knock * step
+        spread = covariance[:, 0, 0] + sigma_px**2
+        gain = covariance[:, :, 0] / spread[:, None]
         factor = np.clip(1 + LEARNING * (surprise - 1), 1 / FASTEST_STEP, FASTEST_STEP)
         return Motion(
             self.position + gain[:, :1] * missed,
             self.velocity + gain[:, 1:] * missed,
-            self.covariance - gain[:, :, None] * self.covariance[:, None, 0],
+            covariance - gain[:, :, None] * covariance[:, None, 0],
             np.where(learn, np.clip(self.acceleration * np.sqrt(factor), 1.0, 1e5), self.acceleration),
         )
 
