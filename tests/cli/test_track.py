@@ -10,6 +10,7 @@ from tests.track.scenes import SIZE, moving, rendered
 from vision_robot.formats.work_plane import write_work_plane
 from vision_robot.geometry import SE3, Camera
 from vision_robot.geometry.work_plane import WorkPlane
+from vision_robot.images import read_image
 from vision_robot.tracks import COLUMNS, Tracks
 from vision_robot.video import Video, VideoWriter
 from vision_robot_cli.main import run
@@ -82,7 +83,7 @@ def test_pick_shows_the_mask_and_suggests(capsys, clip, tmp_path):
         assert found["objects"] == 1
         assert found["blobs"][0]["u_px"] == pytest.approx(30, abs=0.2)
         assert {"red", "green"} <= {one["colour"] for one in found["suggestions"]}
-        assert cv2.imread(str(tmp_path / "mask.png")).shape == (*SIZE[::-1], 3)
+        assert read_image(tmp_path / "mask.png").shape == (*SIZE[::-1], 3)
     assert run(["track", "pick", str(still)]) == 0
     assert "suggested: --color" in capsys.readouterr().out
 
@@ -107,7 +108,7 @@ def test_ctrl_c_keeps_the_rows_so_far(capsys, clip, tmp_path, monkeypatch):
     ("words", "says"),
     [
         (["--set", "foo=1"], "option of tracker background is 'foo': it must be one of window=31"),
-        (["--set", "rgb.tolerance=1"], "an option of background"),
+        (["--set", "rgb.tolerance=1"], "an option of the tracker that runs, background: window"),
         (["--set", "background.window"], "background.option=value"),
         (["--set", "background.window=8"], "an odd number from 3 to 255"),
         (["--color", "red"], "background knows no colours"),

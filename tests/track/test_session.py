@@ -121,8 +121,8 @@ def test_yaw_on_the_plane_goes_on_as_the_rod_turns():
         none = np.full((1, 2), np.nan)
         extra = {name: np.ones(1) for name in ("vu_px_s", "vv_px_s", "sigma_px", "sigma_v_px_s")}
         row = Tracks(
-            np.array([k]), np.array([k / 25]), np.array([1]), plane.pixels(np.zeros((1, 2))), np.zeros((1, 4)),
-            np.ones(1), np.ones((1, 2)), np.array([picture]), none, none, extra,
+            np.array([k]), np.array([k / 25]), np.array([1]), plane.pixels(np.zeros((1, 2))),
+            np.zeros((1, 4)), np.ones(1), np.ones((1, 2)), np.array([picture]), none, none, extra,
         )  # fmt: skip
         found.append(view.carry(row).yaw_rad[0])
     assert np.allclose(np.array(found) - found[0], yaw, atol=0.01)
@@ -162,7 +162,7 @@ def test_what_goes_wrong_in_the_middle_comes_after_what_went_well(frames):
         for step in session.run([*frames[:10], frames[10][:90], *frames[11:]]):
             seen.append(step.frame.index)
 
-    with pytest.raises(BadFrame, match="frame 10 .* 240x90 px and those before are 240x180 px"):
+    with pytest.raises(BadFrame, match=r"frame 10 .* 240x90 px and those before are 240x180 px"):
         through()
     assert seen == list(range(10))
     assert len(session.rest()) == 2
@@ -200,7 +200,7 @@ def test_an_unplugged_camera_ends_in_an_error_with_the_frames_before(monkeypatch
     def through() -> None:
         seen.extend(frame.index for frame in stream)
 
-    with pytest.raises(BadVideo, match="camera 0 .* it stopped giving frames after 4"):
+    with pytest.raises(BadVideo, match=r"camera 0 .* it stopped giving frames after 4"):
         through()
 
 

@@ -118,24 +118,36 @@ class Background(Tracker, LooksAhead):
 
     def learn(self, frames: Iterable[tuple[Array, float]]) -> None:
         """Fill the window from the first `span_s` seconds, so that objects present at the start are seen."""
-        admission = Admission()
+        admission, kept, skip, start = Admission(), [], 1, None
         for count, (given, time_s) in enumerate(frames):
-            frame = self._seen(admission.admit(given, time_s))
-            if count == 0:
-                self._begin(frame)
-            else:
-                frame = self._even(frame)
-            for strip in self._ready.due(time_s):
-                if self._ready.count > self.options.window // 4:
-                    self._refresh(strip)
-                    self._follow_spread(frame[strip.rows], strip)
-                self._ready.take(strip, frame[strip.rows], time_s)
-            if self._ready.count == self.options.window:
+            start = time_s if start is None else start
+            if time_s - start > self.options.span_s:
                 break
-        if self._model:
-            for strip in self._model.strips:
-                strip.due_s = -np.inf
-                self._refresh(strip)
+            if count % skip:
+                continue
+            frame = self._seen(admission.admit(given, time_s))
+            kept.append(frame.copy())
+            if len(kept) > self.options.window:
+                # As many samples as before, spread twice as wide.
+                kept, skip = kept[::2], 2 * skip
+        if kept:
+            self._settle(kept)
+
+    def _settle(self, kept: list[Array]) -> None:
+        """Begin with these frames in the window, in the light of the first."""
+        self._begin(kept[0])
+        model = self._ready
+        for k, frame in enumerate(kept):
+            even = self._even(frame) if k else frame
+            kept[k] = even
+            for strip in model.strips:
+                model.take(strip, even[strip.rows], 0.0)
+        for strip in model.strips:
+            strip.due_s = -np.inf
+            self._refresh(strip)
+            for even in kept:
+                self._follow_spread(even[strip.rows], strip)
+            self._refresh(strip)
 
     def find(self, frame: Image, time_s: float) -> Blobs:
         """Objects in the next frame."""
@@ -246,7 +258,7 @@ class Background(Tracker, LooksAhead):
             mask = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((self._closing,) * 2, np.uint8))
         return np.asarray(mask, dtype=np.uint8)
 
-    def _analysed(self, mask: UInt8[Array, "height width"], frame: Image, even: Image) -> Blobs:
+    def _analysed(self, mask: UInt8[Array, "height width"], frame: Image, even: Array) -> Blobs:
         """What is large enough, less its shadow, with its edges between pixels."""
         runs = Runs.of_mask(mask)
         kept = self._sieve.accepts(analyse_runs(runs))
