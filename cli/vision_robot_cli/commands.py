@@ -65,6 +65,21 @@ IK: dict[str, Command] = {
     ),
 }
 
+TRACK: dict[str, Command] = {
+    "video": Command(
+        "vision_robot_cli.track:video",
+        "Objects in a video: tracks as a table, an overlay, a report.",
+    ),
+    "camera": Command(
+        "vision_robot_cli.track:camera",
+        "The same before a camera, until Ctrl-C.",
+    ),
+    "pick": Command(
+        "vision_robot_cli.track_pick:pick",
+        "Choose a colour to track, and see its mask.",
+    ),
+}
+
 COMMANDS: dict[str, Command | Group] = {
     "benchmark": Command(
         "vision_robot_cli.benchmark:benchmark",
@@ -113,6 +128,9 @@ COMMANDS: dict[str, Command | Group] = {
         IK,
         "The arm: poses to joints, and C for its microcontroller.",
         "An arm in an MJCF or URDF file: from poses to joints, and C for its microcontroller.",
+    "track": Group(
+        TRACK,
+        "Where objects are, how they lie, how fast they move; in pixels and millimetres.",
     ),
 }
 

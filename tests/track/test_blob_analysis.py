@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from vision_robot.errors import BadParameter
@@ -33,6 +33,7 @@ def peer(labels: np.ndarray) -> dict[str, np.ndarray]:
     return regionprops_table(labels, properties=(*names, "eccentricity", "extent", "solidity"))
 
 
+@settings(max_examples=25)
 @given(seed=st.integers(0, 10_000))
 def test_it_agrees_with_scikit_image(seed):
     from skimage.measure import label

@@ -63,6 +63,8 @@ class BackgroundOptions:
     """Difference from the background in standard deviations of noise; None: as few as lone speckles allow."""
     hold_s: float = 60.0
     """How long an object that stops stays one before it becomes background."""
+    light: bool = True
+    """Divide out light that changes as a whole."""
     shadows: bool = True
     """Take shadows off objects."""
     closing_px: int | None = None
@@ -116,22 +118,36 @@ class Background(Tracker, LooksAhead):
 
     def learn(self, frames: Iterable[tuple[Array, float]]) -> None:
         """Fill the window from the first `span_s` seconds, so that objects present at the start are seen."""
-        admission = Admission()
+        admission, kept, skip, start = Admission(), [], 1, None
         for count, (given, time_s) in enumerate(frames):
-            frame = self._seen(admission.admit(given, time_s))
-            if count == 0:
-                self._begin(frame)
-            for strip in self._ready.due(time_s):
-                if self._ready.count > self.options.window // 4:
-                    self._refresh(strip)
-                    self._follow_spread(frame, strip)
-                self._ready.take(strip, frame[strip.rows], time_s)
-            if self._ready.count == self.options.window:
+            start = time_s if start is None else start
+            if time_s - start > self.options.span_s:
                 break
-        if self._model:
-            for strip in self._model.strips:
-                strip.due_s = -np.inf
-                self._refresh(strip)
+            if count % skip:
+                continue
+            frame = self._seen(admission.admit(given, time_s))
+            kept.append(frame.copy())
+            if len(kept) > self.options.window:
+                # As many samples as before, spread twice as wide.
+                kept, skip = kept[::2], 2 * skip
+        if kept:
+            self._settle(kept)
+
+    def _settle(self, kept: list[Array]) -> None:
+        """Begin with these frames in the window, in the light of the first."""
+        self._begin(kept[0])
+        model = self._ready
+        for k, frame in enumerate(kept):
+            even = self._even(frame) if k else frame
+            kept[k] = even
+            for strip in model.strips:
+                model.take(strip, even[strip.rows], 0.0)
+        for strip in model.strips:
+            strip.due_s = -np.inf
+            self._refresh(strip)
+            for even in kept:
+                self._follow_spread(even[strip.rows], strip)
+            self._refresh(strip)
 
     def find(self, frame: Image, time_s: float) -> Blobs:
         """Objects in the next frame."""
@@ -140,17 +156,14 @@ class Background(Tracker, LooksAhead):
             self._begin(seen)
         if self._ready.count == 0:
             self._mask[:] = 0
-            self._feed(seen, np.ones(3), time_s)
+            self._feed(seen, time_s)
             return Blobs.empty()
-        gains = channel_gains(seen, self._ready.image)
-        even = seen
-        if np.abs(gains - 1).max() > SAME_LIGHT:
-            even = _multiplied(seen, 1 / gains)
+        even = self._even(seen)
         difference = cv2.absdiff(cv2.blur(even, (3, 3)), self._smooth)
         mask = self._cleaned(_any_over(difference, self._thresholds))
         blobs = self._analysed(mask, frame, even)
-        self._watch(difference, seen, blobs, time_s)
-        self._feed(seen, gains, time_s)
+        self._watch(difference, even, blobs, time_s)
+        self._feed(even, time_s)
         return blobs
 
     def remarks(self) -> tuple[Remark, ...]:
@@ -205,12 +218,24 @@ class Background(Tracker, LooksAhead):
     def _noise_levels(self) -> float:
         return float(np.median(self._noise.sigma()))
 
-    def _seen(self, frame: Image) -> Image:
+    def _seen(self, frame: Image) -> Array:
         if self.options.colour == "rgb":
             return frame
         return np.asarray(cv2.cvtColor(frame, cv2.COLOR_BGR2GRAY), dtype=np.uint8)
 
-    def _begin(self, seen: Image) -> None:
+    def _even(self, seen: Image) -> Image:
+        """The frame in the background's light: divided by how much brighter each channel is as a whole."""
+        if not self.options.light:
+            return seen
+        gains = channel_gains(seen, self._ready.image)
+        if np.abs(gains - 1).max() <= SAME_LIGHT:
+            return seen
+        table = gain_tables(1 / gains)
+        if seen.ndim == 2:
+            table = np.ascontiguousarray(table[..., 0])
+        return np.asarray(cv2.LUT(seen, table), dtype=np.uint8)
+
+    def _begin(self, seen: Array) -> None:
         self._model = BackgroundModel(seen.shape, self.options.window, self.options.span_s)
         self._noise = LevelNoise(1 if seen.ndim == 2 else 3)
         self._smooth = np.zeros_like(seen)
@@ -233,7 +258,7 @@ class Background(Tracker, LooksAhead):
             mask = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((self._closing,) * 2, np.uint8))
         return np.asarray(mask, dtype=np.uint8)
 
-    def _analysed(self, mask: UInt8[Array, "height width"], frame: Image, even: Image) -> Blobs:
+    def _analysed(self, mask: UInt8[Array, "height width"], frame: Image, even: Array) -> Blobs:
         """What is large enough, less its shadow, with its edges between pixels."""
         runs = Runs.of_mask(mask)
         kept = self._sieve.accepts(analyse_runs(runs))
@@ -252,7 +277,7 @@ class Background(Tracker, LooksAhead):
         self._mask = runs.painted(kept.astype(np.uint8), mask.shape)
         return replace(blobs, score=self._sieve.scores(blobs)).rows(kept)
 
-    def _watch(self, difference: Image, seen: Image, blobs: Blobs, time_s: float) -> None:
+    def _watch(self, difference: Image, even: Image, blobs: Blobs, time_s: float) -> None:
         """Keep the figures, look for ghosts, and begin anew where the whole scene has changed."""
         share = cv2.countNonZero(self._busy) / self._busy.size
         self._roll("foreground_share", share)
@@ -269,13 +294,13 @@ class Background(Tracker, LooksAhead):
                 at = v[inside], u[inside]
                 over = difference[at].astype(float) / np.maximum(self._thresholds[at], 1)
                 self._roll("contrast", float(np.median(over.reshape(len(over), -1).max(axis=1))))
-        if time_s - self._ghost_check_s >= GHOST_EVERY_S and seen.ndim == 3:
+        if time_s - self._ghost_check_s >= GHOST_EVERY_S and even.ndim == 3:
             self._ghost_check_s = time_s
-            self._lay_ghosts(blobs, seen)
+            self._lay_ghosts(blobs, even)
 
-    def _lay_ghosts(self, blobs: Blobs, seen: Image) -> None:
+    def _lay_ghosts(self, blobs: Blobs, even: Image) -> None:
         """What looks like a ghost twice at the same place is one."""
-        suspects = blobs.rows(are_ghosts(blobs, self._busy, seen, self._ready.image))
+        suspects = blobs.rows(are_ghosts(blobs, self._busy, even, self._ready.image))
         places = suspects.centroid_px
         if len(self._suspects) and len(places):
             apart = np.linalg.norm(places[:, None] - self._suspects[None], axis=2).min(axis=1)
@@ -289,26 +314,26 @@ class Background(Tracker, LooksAhead):
                 where[part] = cv2.dilate(self._busy[part], np.ones((5, 5), np.uint8)) > 0
             if sure.any():
                 self._ghosts += int(sure.sum())
-                self._ready.restart(where, seen)
+                self._ready.restart(where, even)
                 self._since[where] = np.inf
                 for strip in self._ready.strips:
                     self._refresh(strip)
         self._suspects = places
 
-    def _feed(self, seen: Image, gains: Array, time_s: float) -> None:
+    def _feed(self, even: Image, time_s: float) -> None:
         """Let the strips that are due take the frame, and what stood behind the objects in it."""
         self._frame += 1
         strips = self._ready.strips
-        self._learn_noise(seen, strips[self._frame % len(strips)], gains)
+        self._learn_noise(even, strips[self._frame % len(strips)])
         for strip in self._ready.due(time_s):
-            samples = seen[strip.rows]
-            self._follow_spread(seen, strip)
+            samples = even[strip.rows]
+            self._follow_spread(samples, strip)
             if self._ready.count > self.options.window // 4 and self.options.hold_s:
-                samples = self._held(samples, strip, gains, time_s)
+                samples = self._held(samples, strip, time_s)
             self._ready.take(strip, samples, time_s)
             self._refresh(strip)
 
-    def _held(self, samples: Image, strip: Strip, gains: Array, time_s: float) -> Image:
+    def _held(self, samples: Image, strip: Strip, time_s: float) -> Image:
         """The samples with the background in place of objects that have not been there for too long."""
         busy = cv2.dilate(self._busy[strip.rows], np.ones((5, 5), np.uint8)) > 0
         since = self._since[strip.rows]
@@ -316,10 +341,9 @@ class Background(Tracker, LooksAhead):
         held = busy & (time_s - since < self.options.hold_s)
         if not held.any():
             return samples
-        behind = self._ready.image[strip.rows]
-        if np.abs(gains - 1).max() > SAME_LIGHT:
-            behind = _multiplied(behind, gains)
-        return np.where(held if samples.ndim == 2 else held[..., None], behind, samples)
+        return np.where(
+            held if samples.ndim == 2 else held[..., None], self._ready.image[strip.rows], samples
+        )
 
     def _refresh(self, strip: Strip) -> None:
         """Smoothed background and thresholds of a strip whose median has changed."""
@@ -332,9 +356,9 @@ class Background(Tracker, LooksAhead):
         own = own if thresholds.ndim == 2 else cv2.merge((own, own, own))
         self._thresholds[strip.rows] = cv2.max(thresholds, own)
 
-    def _follow_spread(self, seen: Image, strip: Strip) -> None:
+    def _follow_spread(self, samples: Image, strip: Strip) -> None:
         """Move each pixel's spread towards the quantile of what it differs by, a step a sample."""
-        apart = cv2.absdiff(cv2.blur(seen[strip.rows], (3, 3)), self._smooth[strip.rows])
+        apart = cv2.absdiff(cv2.blur(samples, (3, 3)), self._smooth[strip.rows])
         if apart.ndim == 3:
             apart = cv2.max(cv2.max(apart[..., 0], apart[..., 1]), apart[..., 2])
         spread = self._spread[strip.rows]
@@ -342,35 +366,20 @@ class Background(Tracker, LooksAhead):
         still = self._busy[strip.rows] == 0
         np.maximum(spread + step * still, 0, out=spread)
 
-    def _learn_noise(self, seen: Image, strip: Strip, gains: Array) -> None:
+    def _learn_noise(self, even: Image, strip: Strip) -> None:
         """From every fourth pixel of a strip, where nothing is."""
         if self._ready.count < 3:
             return
-        rows = strip.rows
-        even = seen[rows] if np.abs(gains - 1).max() <= SAME_LIGHT else _multiplied(seen[rows], 1 / gains)
-        inner = np.s_[1:-1:2, 1:-1:2]
-        smooth, behind = cv2.blur(even, (3, 3))[inner], self._smooth[rows][inner]
-        still = self._busy[rows][inner] == 0
-        channels = self._noise_channels
+        rows, inner = strip.rows, np.s_[1:-1:2, 1:-1:2]
+        smooth, behind = cv2.blur(even[rows], (3, 3))[inner], self._smooth[rows][inner]
+        still = (self._busy[rows][inner] == 0).ravel()
         difference = cv2.absdiff(np.ascontiguousarray(smooth), np.ascontiguousarray(behind))
-        self._noise.update(
-            difference.reshape(-1, channels)[still.ravel()], behind.reshape(-1, channels)[still.ravel()]
-        )
-
-    @property
-    def _noise_channels(self) -> int:
-        return 1 if self._smooth.ndim == 2 else 3
+        channels = 1 if behind.ndim == 2 else 3
+        self._noise.update(difference.reshape(-1, channels)[still], behind.reshape(-1, channels)[still])
 
     def _roll(self, name: str, value: float) -> None:
         before = self._figures[name]
         self._figures[name] = value if np.isnan(before) else (1 - ROLLING) * before + ROLLING * value
-
-
-def _multiplied(image: Image, gains: Array) -> Image:
-    table = gain_tables(gains)
-    if image.ndim == 2:
-        table = np.ascontiguousarray(table[..., 0])
-    return np.asarray(cv2.LUT(image, table), dtype=np.uint8)
 
 
 def _any_over(difference: Image, thresholds: Image) -> UInt8[Array, "height width"]:

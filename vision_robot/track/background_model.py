@@ -58,7 +58,13 @@ class BackgroundModel:
         filled = min(2 * strip.median.count / self._window, 1.0)
         step = self._span_s / self._window * filled
         share = (self.strips.index(strip) + 1) / len(self.strips)
-        strip.due_s = time_s + (step * share if first else step)
+        if first:
+            strip.due_s = time_s + step * share
+        else:
+            # From when it was due, not from when a frame came: the strips stay apart.
+            strip.due_s += step
+            if strip.due_s < time_s:
+                strip.due_s = time_s + step * share
 
     def restart(self, where: Array, frame: UInt8[Array, "..."]) -> None:
         """Forget what was behind the pixels of a (height, width) mask: they are as the frame shows them."""

@@ -12,7 +12,7 @@ STEPS = 2
 
 CLASSES = 2 * 24
 FORGET = 0.995
-PERSISTENT = 0.6
+PERSISTENT = 0.85
 """Share of a class that must be seen again for it to count as objects."""
 
 LEAST_PX = 6.0
