@@ -12,7 +12,12 @@ from jaxtyping import install_import_hook
 
 import vision_robot.types
 
-CHECKED = ["vision_robot.geometry", "vision_robot.formats", "vision_robot.calibrate"]
+CHECKED = [
+    "vision_robot.geometry",
+    "vision_robot.formats",
+    "vision_robot.calibrate",
+    "vision_robot.track",
+]
 
 # Annotations mean what they say, except that an int may stand where a float is asked for (PEP 484).
 strict = beartype.beartype(conf=beartype.BeartypeConf(is_pep484_tower=True))

@@ -12,14 +12,17 @@ from typing import Any
 __all__ = [
     "BadCameraFile",
     "BadCornerFile",
+    "BadFrame",
     "BadInput",
     "BadParameter",
     "BadTable",
     "BadVideo",
     "BoardNotFound",
+    "BrokenPlugin",
     "DegenerateViews",
     "MissingOpenGL",
     "MixedImageSizes",
+    "NoColour",
     "NoConvergence",
     "NoImages",
     "TooFewViews",
@@ -168,6 +171,31 @@ class BadVideo(BadInput):
     def __init__(self, path: object, why: str):
         self.path, self.why = str(path), why
         super().__init__(f"{path} cannot be used as a video: {why}")
+
+
+class BadFrame(BadInput):
+    """A frame does not belong into the video it was given for."""
+
+    def __init__(self, index: int, why: str):
+        self.index, self.why = index, why
+        super().__init__(f"frame {index} cannot be used: {why}")
+
+
+class NoColour(BadInput):
+    """The first frame does not show a colour to track."""
+
+    def __init__(self, colour: str | None = None):
+        self.colour = colour
+        what = f"{colour} is not in the first frame" if colour else "no colour stands out in the first frame"
+        super().__init__(f"{what}: pick a point or a region of the object (see `vr track pick`)")
+
+
+class BrokenPlugin(BadInput):
+    """A package names something that cannot be loaded."""
+
+    def __init__(self, name: str, package: str, target: str, why: str):
+        self.name, self.package, self.target, self.why = name, package, target, why
+        super().__init__(f"{name} of package {package} ({target}) cannot be loaded ({why}): mend or remove")
 
 
 class UnwritableOutput(BadInput):

@@ -11,8 +11,8 @@ from vision_robot.calibrate.judgement import Judgement
 from vision_robot.calibrate.judgement.advice import advice
 from vision_robot.calibrate.judgement.selection import Selection
 from vision_robot.evaluate.projection import projection_error
-from vision_robot.formats import write_camera
-from vision_robot.geometry import Camera
+from vision_robot.formats import write_known_camera
+from vision_robot.geometry import Camera, KnownCamera
 from vision_robot_cli.calibration_input import CalibrationInput
 from vision_robot_cli.calibration_verdict import Verdict
 from vision_robot_cli.output import note
@@ -211,5 +211,5 @@ def write_report(verdict: Verdict, given: CalibrationInput, path: Path, seed: in
 
 def write_camera_file(result: CalibrationResult, path: Path, file_format: str | None) -> None:
     """Write --out."""
-    write_camera(result.camera, path, file_format)
+    write_known_camera(KnownCamera(result.camera, result.covariance.intrinsics), path, file_format)
     note(f"camera written to {path}")

@@ -11,8 +11,9 @@ from vision_robot.errors import BadParameter, VisionRobotError
 from vision_robot.files import check_place, write_bytes
 from vision_robot.formats.camera_format import CameraFormat
 from vision_robot.formats.loss import fitted
+from vision_robot.formats.native import read_known, write_known
 from vision_robot.formats.source import CameraSource, open_source
-from vision_robot.geometry import Camera, lens_named
+from vision_robot.geometry import Camera, KnownCamera, lens_named
 
 __all__ = [
     "FORMATS",
@@ -22,7 +23,9 @@ __all__ = [
     "format_named",
     "read_camera",
     "read_cameras",
+    "read_known_camera",
     "write_camera",
+    "write_known_camera",
 ]
 
 FORMATS: dict[str, str] = {
@@ -112,6 +115,35 @@ def write_camera(
     target = format_named(name)
     suffix = Path(path).suffix.lower()
     write_bytes(path, target.write(fitted(camera, name, target, allow_loss=allow_loss), suffix))
+
+
+def read_known_camera(
+    path: Path | str,
+    format: str | None = None,  # noqa: A002
+    *,
+    size: tuple[int, int] | None = None,
+    name: str | None = None,
+) -> KnownCamera:
+    """As `read_camera`, with the covariance that files of our own carry; exact in all other formats."""
+    source = open_source(path, size)
+    target = format_named(format) if format else _recognised(source)
+    if target is format_named("native"):
+        return read_known(source)
+    return KnownCamera.exact(read_camera(path, format, size=size, name=name))
+
+
+def write_known_camera(
+    known: KnownCamera,
+    path: Path | str,
+    format: str | None = None,  # noqa: A002
+    *,
+    allow_loss: bool = False,
+) -> None:
+    """As `write_camera`; the covariance is kept by our own format and dropped by all others."""
+    if format_named(_name_for(path, format)) is format_named("native"):
+        write_bytes(path, write_known(known))
+    else:
+        write_camera(known.camera, path, format, allow_loss=allow_loss)
 
 
 def check_writable(path: Path | str, format: str | None, *, model: str, skew: bool) -> None:  # noqa: A002

@@ -1,7 +1,7 @@
-"""Our own JSON: ``{"schema": "vr.camera/1", "camera": {...}}``.
+"""Our own JSON: ``{"schema": "vr.camera/1", "camera": {...}, "covariance": {...}}``.
 
-The `camera` object is the one `vr calibrate --json` prints, so that whole output, saved to a
-file, reads as well.
+The objects are those that `vr calibrate --json` prints, so that whole output, saved to a
+file, reads as well. The covariance may be missing: then nothing is known of the camera's error.
 """
 
 import json
@@ -9,12 +9,15 @@ import re
 
 from vision_robot.errors import BadParameter
 from vision_robot.formats.camera_format import ALL_LENSES, CameraFormat
+from vision_robot.formats.covariance import covariance_object, read_covariance
 from vision_robot.formats.intrinsics import make_camera
 from vision_robot.formats.parse import parse_json
 from vision_robot.formats.source import CameraSource
-from vision_robot.geometry import Camera, lens_named
+from vision_robot.geometry import Camera, KnownCamera, lens_named
 
-__all__ = ["FORMAT"]
+__all__ = ["FORMAT", "SCHEMA", "camera_object", "read_known", "write_known"]
+
+SCHEMA = "vr.camera/1"
 
 
 def matches(source: CameraSource) -> bool:
@@ -39,9 +42,18 @@ def read(source: CameraSource) -> dict[str, Camera]:
     return {"camera": make_camera(source, size, (fx, fy, cx, cy, skew), model.text(), k)}
 
 
-def write(camera: Camera, suffix: str) -> bytes:  # noqa: ARG001
-    """JSON, numbers with all their digits."""
-    fields = {
+def read_known(source: CameraSource) -> KnownCamera:
+    """The camera with its covariance, exact where the file has none."""
+    (camera,) = read(source).values()
+    known = parse_json(source).find("covariance")
+    if known is None:
+        return KnownCamera.exact(camera)
+    return KnownCamera(camera, read_covariance(known, camera.parameter_names))
+
+
+def camera_object(camera: Camera) -> dict[str, object]:
+    """The `camera` object."""
+    return {
         "width": camera.width,
         "height": camera.height,
         "fx": camera.fx,
@@ -52,7 +64,19 @@ def write(camera: Camera, suffix: str) -> bytes:  # noqa: ARG001
         "model": camera.model,
         "distortion": list(camera.distortion),
     }
-    return (json.dumps({"schema": "vr.camera/1", "camera": fields}, indent=2) + "\n").encode()
+
+
+def write(camera: Camera, suffix: str) -> bytes:  # noqa: ARG001
+    """JSON, numbers with all their digits."""
+    return write_known(KnownCamera.exact(camera))
+
+
+def write_known(known: KnownCamera) -> bytes:
+    """The same with the covariance, where there is one."""
+    fields: dict[str, object] = {"schema": SCHEMA, "camera": camera_object(known.camera)}
+    if not known.taken_as_exact:
+        fields["covariance"] = covariance_object(known.camera.parameter_names, known.covariance)
+    return (json.dumps(fields, indent=2) + "\n").encode()
 
 
 FORMAT = CameraFormat("JSON of this tool", matches, read, write, ALL_LENSES, skew=True)
