@@ -1,6 +1,7 @@
 """Picture pairs whose flow is known exactly: textured layers that move by affine maps, sampled by area."""
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -9,18 +10,22 @@ FINE = 4
 """Samples per pixel and axis."""
 
 
+Outline = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
 @dataclass(frozen=True)
 class Layer:
     """A texture, where it is, and how it moves from the first picture to the second.
 
     `texture` is a grey picture whose pixel (0, 0) lies on pixel `corner` of the first picture; it goes on
-    beyond its border as in a mirror. `outline` says where the layer is, from pixel coordinates of the first picture
-    to booleans; none is everywhere. `motion` is 2×3 and takes pixels of the first picture to the second.
+    beyond its border as in a mirror. `outline` says where the layer is, from pixel coordinates of the first
+    picture to booleans; none is everywhere. `motion` is 2×3 and takes pixels of the first picture to the
+    second.
     """
 
     texture: np.ndarray
     motion: np.ndarray
-    outline: object = None
+    outline: Outline | None = None
     corner: tuple[float, float] = (0.0, 0.0)
 
 
@@ -32,7 +37,6 @@ class Pair:
     second: np.ndarray
     flow: np.ndarray
     visible: np.ndarray
-    name: str = field(default="")
 
 
 def rendered(
@@ -50,15 +54,19 @@ def rendered(
         end_u, end_v = np.where(owner == k, x, end_u), np.where(owner == k, y, end_v)
     inside = (end_u >= 0) & (end_u <= size[0] - 1) & (end_v >= 0) & (end_v <= size[1] - 1)
     visible = inside & (_owner(layers, end_u, end_v, [layer.motion for layer in layers]) == owner)
-    pictures = [
+    before, after = (
         np.clip(np.rint(scale * picture + noise * rng.normal(size=picture.shape)), 0, 255).astype(np.uint8)
         for picture, scale in ((first, 1.0), (second, gain))
-    ]
-    return Pair(*pictures, np.stack([end_u - u, end_v - v], axis=-1), visible)
+    )
+    return Pair(before, after, np.stack([end_u - u, end_v - v], axis=-1), visible)
 
 
 def affine(
-    shift: tuple[float, float], *, turn_deg: float = 0.0, zoom: float = 1.0, about: tuple[float, float] = (0, 0)
+    shift: tuple[float, float],
+    *,
+    turn_deg: float = 0.0,
+    zoom: float = 1.0,
+    about: tuple[float, float] = (0, 0),
 ) -> np.ndarray:
     """Turn and zoom about a pixel, then shift [px]."""
     angle = np.deg2rad(turn_deg)
@@ -67,7 +75,9 @@ def affine(
     return np.column_stack([matrix, centre - matrix @ centre + shift])
 
 
-def noise_texture(size: tuple[int, int], *, seed: int, finest_px: float = 2.0, contrast: float = 40.0) -> np.ndarray:
+def noise_texture(
+    size: tuple[int, int], *, seed: int, finest_px: float = 2.0, contrast: float = 40.0
+) -> np.ndarray:
     """Random grey of all scales down to `finest_px`, each half as strong as the one twice as large."""
     rng = np.random.default_rng(seed)
     total, strength, scale = np.zeros(size[::-1]), 1.0, 64.0
@@ -78,7 +88,7 @@ def noise_texture(size: tuple[int, int], *, seed: int, finest_px: float = 2.0, c
     return (128 + contrast * total / total.std()).clip(0, 255).astype(np.float32)
 
 
-def ellipse(centre: tuple[float, float], axes: tuple[float, float], turn_deg: float = 0.0):
+def ellipse(centre: tuple[float, float], axes: tuple[float, float], turn_deg: float = 0.0) -> Outline:
     """Outline of an ellipse with these half axes [px]."""
     c, s = np.cos(np.deg2rad(turn_deg)), np.sin(np.deg2rad(turn_deg))
 
@@ -89,7 +99,7 @@ def ellipse(centre: tuple[float, float], axes: tuple[float, float], turn_deg: fl
     return inside
 
 
-def rod(centre: tuple[float, float], length: float, width: float, turn_deg: float = 0.0):
+def rod(centre: tuple[float, float], length: float, width: float, turn_deg: float = 0.0) -> Outline:
     """Outline of a rectangle."""
     c, s = np.cos(np.deg2rad(turn_deg)), np.sin(np.deg2rad(turn_deg))
 
@@ -100,7 +110,9 @@ def rod(centre: tuple[float, float], length: float, width: float, turn_deg: floa
     return inside
 
 
-def _view(layers: list[Layer], size: tuple[int, int], motions: list[np.ndarray]):
+def _view(
+    layers: list[Layer], size: tuple[int, int], motions: list[np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
     """The picture, and which layer each pixel's centre shows."""
     width, height = size
     fine_u = (np.arange(width * FINE) + 0.5) / FINE - 0.5
@@ -116,7 +128,7 @@ def _view(layers: list[Layer], size: tuple[int, int], motions: list[np.ndarray])
             cv2.INTER_CUBIC,
             borderMode=cv2.BORDER_REFLECT,
         )
-        picture = grey if layer.outline is None else np.where(layer.outline(x, y), grey, picture)  # type: ignore[operator]
+        picture = grey if layer.outline is None else np.where(layer.outline(x, y), grey, picture)
     mean = picture.reshape(height, FINE, width, FINE).mean(axis=(1, 3))
     whole_u, whole_v = np.meshgrid(np.arange(width, dtype=float), np.arange(height, dtype=float))
     return mean, _owner(layers, whole_u, whole_v, motions)
@@ -126,7 +138,7 @@ def _owner(layers: list[Layer], u: np.ndarray, v: np.ndarray, motions: list[np.n
     owner = np.zeros(u.shape, int)
     for k, (layer, motion) in enumerate(zip(layers, motions, strict=True)):
         if layer.outline is not None:
-            owner[layer.outline(*_moved(_inverse(motion), u, v))] = k  # type: ignore[operator]
+            owner[layer.outline(*_moved(_inverse(motion), u, v))] = k
     return owner
 
 

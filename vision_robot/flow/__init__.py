@@ -1,8 +1,9 @@
 """Optical flow by Horn and Schunck's energy, solved to its minimum, and told how near.
 
-`horn_schunck` is the method of 1981 between two pictures, `horn_schunck_sweeps` its usual form that stops early;
-`estimate_flow` goes on to motions of many pixels and flow that breaks at the borders of objects.
-Flow is (2, height, width), (du, dv) [px] from the first picture to the second; evaluation and files have it last.
+`horn_schunck` is the method of 1981 between two pictures, `horn_schunck_sweeps` its usual form that stops
+early; `estimate_flow` goes on to motions of many pixels and flow that breaks at the borders of objects.
+Flow is (2, height, width), (du, dv) [px] from the first picture to the second; evaluation and files have it
+last.
 """
 
 from vision_robot.flow.consistency import occluded, there_and_back
@@ -13,6 +14,7 @@ from vision_robot.flow.evaluation import FlowError, flow_error
 from vision_robot.flow.horn_schunck import horn_schunck, horn_schunck_sweeps
 from vision_robot.flow.minimise import Minimum, minimise
 from vision_robot.flow.multigrid import Multigrid
+from vision_robot.flow.sequence import FlowSequence
 
 __all__ = [
     "FAST",
@@ -20,6 +22,7 @@ __all__ = [
     "FlowEquations",
     "FlowError",
     "FlowEstimator",
+    "FlowSequence",
     "FlowSettings",
     "Minimum",
     "Multigrid",

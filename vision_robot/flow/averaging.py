@@ -1,11 +1,12 @@
 """Horn and Schunck's local average, and the smoothness that it stands for.
 
-With w̄ the average of w over the eight neighbours (1/6 beside, 1/12 across the corner), Σ w·(w − w̄) is half the
-sum of squared differences to the neighbours, weighted alike. Beyond the border the picture repeats its last row,
-which keeps the average symmetric: there is one energy, and one minimiser.
+With w̄ the average of w over the eight neighbours (1/6 beside, 1/12 across the corner), Σ w·(w − w̄) is
+half the sum of squared differences to the neighbours, weighted alike. Beyond the border the picture repeats
+its last row, which keeps the average symmetric: there is one energy, and one minimiser.
 
-Where pixels are bound to their neighbours more or less firmly, each difference counts by the mean of the two pixels'
-bonds β, and w − w̄ becomes d w − w̄ with d = (β + β̄)/2 and the mean of β w̄ and of the average of β w for w̄.
+Where pixels are bound to their neighbours more or less firmly, each difference counts by the mean of the
+two pixels' bonds β, and w − w̄ becomes d w − w̄ with d = (β + β̄)/2 and the mean of β w̄ and of the average
+of β w for w̄.
 """
 
 import cv2

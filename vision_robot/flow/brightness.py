@@ -16,7 +16,7 @@ NOISE_MASK = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], dtype=np.float32) /
 
 
 def noise_sigma(image: Array) -> float:
-    """Standard deviation of a picture's white noise, in grey levels, from the median of second differences."""
+    """Standard deviation of a picture's white noise [grey levels], from the median of second differences."""
     rough = cv2.filter2D(np.asarray(image, dtype=np.float32), -1, NOISE_MASK)[1:-1, 1:-1]
     step = max(1, int(np.sqrt(rough.size / (4 * SAMPLES))))
     return float(1.4826 * np.median(np.abs(rough[::step, ::step])))

@@ -20,7 +20,11 @@ def there_and_back(forward: Float[Array, "2 h w"], backward: Float[Array, "2 h w
 
 
 def occluded(
-    forward: Float[Array, "2 h w"], backward: Float[Array, "2 h w"], *, slack_px: float = 0.5, share: float = 0.1
+    forward: Float[Array, "2 h w"],
+    backward: Float[Array, "2 h w"],
+    *,
+    slack_px: float = 0.5,
+    share: float = 0.1,
 ) -> Bool[Array, "h w"]:
     """Pixels of the first picture that the second hides or no longer holds.
 

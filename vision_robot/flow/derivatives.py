@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 
 from vision_robot.errors import BadParameter
+from vision_robot.flow.strips import strips
 from vision_robot.types import Array, Float
 
 __all__ = ["Derivatives", "cube", "four_point", "prefiltered"]
@@ -28,11 +29,18 @@ def cube(first: Array, second: Array) -> Derivatives:
 
     The cube of pixel (u, v) reaches to (u + 1, v + 1), so what is estimated belongs to the cube's middle.
     """
-    first, second = _float(first), _float(second)
-    both, change = cv2.add(first, second), cv2.subtract(second, first)
-    x = np.array([[-1, 1], [-1, 1]], dtype=np.float32) / 4
-    t = np.ones((2, 2), dtype=np.float32) / 4
-    return Derivatives(_cube_filter(both, x), _cube_filter(both, x.T.copy()), _cube_filter(change, t))
+    first, second = _whole(first), _whole(second)
+    out = np.empty((3, *first.shape), np.result_type(first.dtype, np.float32))
+    slope = np.array([[-1, 1], [-1, 1]], dtype=np.float32) / 4
+    mean = np.ones((2, 2), dtype=np.float32) / 4
+    for strip in strips(first.shape, 1):
+        a, b = (picture[strip.known].astype(out.dtype) for picture in (first, second))
+        both, change = cv2.add(a, b), cv2.subtract(b, a)
+        for plane, (source, kernel) in zip(
+            out, ((both, slope), (both, slope.T), (change, mean)), strict=True
+        ):
+            plane[strip.rows] = _cube_filter(source, kernel)[strip.inner]
+    return Derivatives(*out)
 
 
 def four_point(first: Array, second: Array) -> Derivatives:
@@ -76,11 +84,17 @@ def _central(image: Float[Array, "h w"]) -> tuple[Float[Array, "h w"], Float[Arr
 
 
 def _cube_filter(image: Float[Array, "h w"], kernel: Float[Array, "2 2"]) -> Float[Array, "h w"]:
+    kernel = np.ascontiguousarray(kernel)
     return cv2.filter2D(image, -1, kernel, anchor=(0, 0), borderType=cv2.BORDER_REPLICATE)
 
 
-def _float(image: Array) -> Float[Array, "h w"]:
+def _whole(image: Array) -> Array:
     image = np.asarray(image)
     if image.ndim != 2:
         raise BadParameter("shape of a frame", image.shape, "(height, width): turn colour into grey first")
+    return image
+
+
+def _float(image: Array) -> Float[Array, "h w"]:
+    image = _whole(image)
     return image if image.dtype in (np.float32, np.float64) else image.astype(np.float32)

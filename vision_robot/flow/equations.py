@@ -48,7 +48,7 @@ class FlowEquations:
         weight: Float[Array, "h w"] | None = None,
         bond: Float[Array, "h w"] | None = None,
     ) -> "FlowEquations":
-        """Equations for the whole flow where the second picture was warped back by `flow` before differentiation.
+        """Equations for the whole flow, the second picture having been warped back by `flow`.
 
         `weight` is how much the brightness of each pixel counts, 1 where not given.
         """
@@ -62,7 +62,7 @@ class FlowEquations:
     def residual(self, flow: Float[Array, "2 h w"]) -> Float[Array, "2 h w"]:
         """The left-hand side, negative: zero at the minimiser."""
         miss = self.x * flow[0] + self.y * flow[1] + self.t
-        return -self.alpha**2 * self._bent(flow) - np.stack([self.x * miss, self.y * miss])
+        return -(self.alpha**2) * self._bent(flow) - np.stack([self.x * miss, self.y * miss])
 
     def energy(self, flow: Float[Array, "2 h w"]) -> float:
         """Σ (x u + y v + t)² + α² Σ w·(w − w̄)."""
@@ -71,6 +71,6 @@ class FlowEquations:
         return float((miss.astype(float) ** 2).sum() + self.alpha**2 * smooth)
 
     def _bent(self, flow: Float[Array, "2 h w"]) -> Float[Array, "2 h w"]:
-        """d w − w̄."""
+        """The smoothness term's derivative, d w − w̄."""
         firm = 1 if self.bond is None else binding(self.bond)
         return firm * flow - averaged(flow, bond=self.bond)

@@ -1,4 +1,4 @@
-"""Flow of motions of many pixels: Horn and Schunck's equations on a pyramid, the second picture warped back each time."""
+"""Flow of many pixels: Horn and Schunck's equations on a pyramid, the second picture warped each time."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -33,7 +33,7 @@ class FlowSettings:
     alpha: float | None = None
     """Weight of smoothness [grey levels]; None grows with the pictures' noise."""
     break_at: float | None = 0.05
-    """Change of flow [px per px] at which the flow may break; None is Horn and Schunck's smoothness everywhere."""
+    """Change of flow [px per px] at which it may break; None is Horn and Schunck's smoothness everywhere."""
     robust: float | None = None
     """Grey levels of mismatch beyond which a pixel counts less (Charbonnier); None counts all alike."""
     warps: int = 2
@@ -43,7 +43,7 @@ class FlowSettings:
     exposure: bool = True
     """Allow for a gain and an offset between the pictures."""
     halvings: int = 0
-    """Levels of the pyramid left out at its fine end: 1 estimates on half the pixels per side, 4 times faster."""
+    """Levels of the pyramid left out at its fine end: 1 estimates on half the pixels per side."""
     tolerance_px: float = 0.01
     """Distance from the minimum of the last energy, rms."""
 
@@ -100,16 +100,25 @@ class FlowEstimator:
         return replace(result, flow=_resized(result.flow, np.shape(first)))
 
     def _level(
-        self, first: Float[Array, "h w"], second: Float[Array, "h w"], flow: Float[Array, "2 h w"], alpha: float, *, last: bool
+        self,
+        first: Float[Array, "h w"],
+        second: Float[Array, "h w"],
+        flow: Float[Array, "2 h w"],
+        alpha: float,
+        *,
+        last: bool,
     ) -> Minimum:
         """Warp and solve, as often as set, on one level of the pyramid."""
         told, result = self.settings, None
+        if first.shape not in self._grids:
+            self._grids[first.shape], self._warps[first.shape] = Multigrid(first.shape), Warp(first.shape)
+        grids = self._grids[first.shape]
         for k in range(told.warps):
             final = last and k == told.warps - 1
             result = minimise(
                 self._equations(first, second, flow, alpha),
                 start=flow,
-                grids=self._grids.setdefault(first.shape, Multigrid(first.shape)) if first.shape not in self._grids else self._grids[first.shape],
+                grids=grids,
                 tolerance_px=told.tolerance_px if final else ON_THE_WAY_PX,
                 most_cycles=30 if final else 1,
             )
@@ -119,11 +128,12 @@ class FlowEstimator:
         assert result is not None
         return replace(result, flow=flow)
 
-    def _equations(self, first: Array, second: Array, flow: Float[Array, "2 h w"], alpha: float) -> FlowEquations:
+    def _equations(
+        self, first: Array, second: Array, flow: Float[Array, "2 h w"], alpha: float
+    ) -> FlowEquations:
         """Brightness linearised about a flow."""
         told = self.settings
-        warp = self._warps.setdefault(first.shape, Warp(first.shape)) if first.shape not in self._warps else self._warps[first.shape]
-        back, weight = warp.back(second, flow)
+        back, weight = self._warps[first.shape].back(second, flow)
         if told.exposure:
             gain, offset = exposure_between(first, back)
             back = back * np.float32(gain) + np.float32(offset)
@@ -136,7 +146,9 @@ class FlowEstimator:
 
 def _pyramid(first: Array, second: Array) -> Iterator[tuple[Float[Array, "h w"], Float[Array, "h w"]]]:
     """Both pictures, softened, and at half the size again and again, finest first."""
-    pair = tuple(cv2.GaussianBlur(np.asarray(p, np.float32), (0, 0), PREFILTER_SIGMA) for p in (first, second))
+    pair = tuple(
+        cv2.GaussianBlur(np.asarray(p, np.float32), (0, 0), PREFILTER_SIGMA) for p in (first, second)
+    )
     yield pair[0], pair[1]
     while min(pair[0].shape) >= 2 * COARSEST_SIDE:
         pair = tuple(cv2.pyrDown(picture) for picture in pair)
@@ -149,5 +161,8 @@ def _resized(flow: Float[Array, "2 h w"], shape: tuple[int, ...]) -> Float[Array
         return flow
     size = (shape[1], shape[0])
     scale = (shape[1] / flow.shape[2], shape[0] / flow.shape[1])
-    planes = [cv2.resize(p, size, interpolation=cv2.INTER_LINEAR) * np.float32(s) for p, s in zip(flow, scale, strict=True)]
+    planes = [
+        cv2.resize(p, size, interpolation=cv2.INTER_LINEAR) * np.float32(s)
+        for p, s in zip(flow, scale, strict=True)
+    ]
     return np.stack(planes)

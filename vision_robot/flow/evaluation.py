@@ -31,7 +31,9 @@ def flow_error(flow: Array, truth: Array, mask: Bool[Array, "h w"] | None = None
     """Errors of a flow (height, width, 2) [px] where the truth is known and `mask` holds."""
     flow, truth = np.asarray(flow, dtype=float), np.asarray(truth, dtype=float)
     if flow.shape != truth.shape or flow.ndim != 3 or flow.shape[2] != 2:
-        raise BadParameter("shape of the flow", flow.shape, f"(height, width, 2), as the truth's {truth.shape}")
+        raise BadParameter(
+            "shape of the flow", flow.shape, f"(height, width, 2), as the truth's {truth.shape}"
+        )
     counted = np.isfinite(truth).all(axis=-1)
     if mask is not None:
         if np.shape(mask) != counted.shape:
@@ -42,7 +44,9 @@ def flow_error(flow: Array, truth: Array, mask: Bool[Array, "h w"] | None = None
     flow, truth = flow[counted], truth[counted]
     if not np.isfinite(flow).all():
         missing = int((~np.isfinite(flow).all(axis=-1)).sum())
-        raise BadParameter("flow", f"not a number at {missing} pixels that count", "known there: mask them out")
+        raise BadParameter(
+            "flow", f"not a number at {missing} pixels that count", "known there: mask them out"
+        )
     angle = angular_error_deg(flow, truth)
     return FlowError(
         endpoint_px=float(endpoint_error_px(flow, truth).mean()),
@@ -61,7 +65,8 @@ def endpoint_error_px(flow: Float[Array, "*n 2"], truth: Float[Array, "*n 2"]) -
 def angular_error_deg(flow: Float[Array, "*n 2"], truth: Float[Array, "*n 2"]) -> Float[Array, "*n"]:
     """Angle between the space-time directions (u, v, 1) and (u*, v*, 1) [degrees].
 
-    By the arc tangent of cross over dot product: the arc cosine loses half its digits where flows are nearly right.
+    By the arc tangent of cross over dot product: the arc cosine loses half its digits where flows are
+    nearly right.
     """
     (u, v), (x, y) = np.moveaxis(flow, -1, 0), np.moveaxis(truth, -1, 0)
     cross = np.sqrt((v - y) ** 2 + (x - u) ** 2 + (u * y - v * x) ** 2)

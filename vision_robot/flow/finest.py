@@ -8,7 +8,7 @@ from vision_robot.flow.equations import FlowEquations
 from vision_robot.flow.grids import coarse_rows, coarse_shape, grown_rows, shrink
 from vision_robot.flow.level import STIFFNESS
 from vision_robot.flow.strips import Strip, strips
-from vision_robot.flow.sweep import left_over, settled, swept
+from vision_robot.flow.sweep import left_over, swept
 from vision_robot.types import Array, Float
 
 __all__ = ["Finest"]
@@ -31,7 +31,7 @@ class Finest:
     def prepare(
         self, equations: FlowEquations, tensor: Float[Array, "3 hc wc"], pull: Float[Array, "2 hc wc"]
     ) -> None:
-        """Take the equations; write those of the next coarser grid into `tensor` and `pull`, as `Level.prepare`."""
+        """Take the equations, and write those of the next coarser grid, as `Level.prepare` does."""
         scale = 1 / equations.alpha**2
         self.bond = equations.bond
         firm = None if self.bond is None else binding(self.bond)
@@ -45,7 +45,8 @@ class Finest:
                 soft, ((x, x, 1), (x, y, 1), (y, y, 1), (x, t, -1), (y, t, -1)), strict=True
             ):
                 cv2.multiply(a, b, dst=plane, scale=sign * scale)
-            # With one channel det J = 0 and (J + d)⁻¹ = (adj J + d) / d (d + trace J); (J + d)⁻¹ b = b / (d + trace J).
+            # With one channel det J = 0; (J + d)⁻¹ is (adj J + d) / d (d + trace J), and b becomes
+            # b / (d + trace J).
             trace = cv2.add(xx, yy)
             d: Array | float = 1.0 if firm is None else firm[rows]
             own = np.reciprocal(trace + d)

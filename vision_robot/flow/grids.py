@@ -26,7 +26,11 @@ def shrink(fine: Float[Array, "k r w"], coarse: Float[Array, "k rc wc"]) -> None
     """
     odd = fine.shape[1] % 2, fine.shape[2] % 2
     for plane, out in zip(fine, coarse, strict=True):
-        whole = cv2.copyMakeBorder(plane, 0, odd[0], 0, odd[1], cv2.BORDER_CONSTANT, value=0) if any(odd) else plane
+        whole = (
+            cv2.copyMakeBorder(plane, 0, odd[0], 0, odd[1], cv2.BORDER_CONSTANT, value=0)
+            if any(odd)
+            else plane
+        )
         cv2.resize(whole, out.shape[::-1], dst=out, interpolation=cv2.INTER_AREA)
 
 
@@ -45,5 +49,6 @@ def grown_rows(
     size = (2 * coarse.shape[2], 2 * (high - low))
     rows = slice(strip.low - 2 * low, strip.high - 2 * low)
     return [
-        cv2.resize(plane[low:high], size, interpolation=cv2.INTER_LINEAR)[rows, : shape[1]] for plane in coarse
+        cv2.resize(plane[low:high], size, interpolation=cv2.INTER_LINEAR)[rows, : shape[1]]
+        for plane in coarse
     ]

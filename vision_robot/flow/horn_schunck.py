@@ -1,4 +1,4 @@
-"""Horn and Schunck (1981), solved as the text does, by a number of sweeps, and as it should be, to the minimum."""
+"""Horn and Schunck (1981): by a number of sweeps, as is usual, and to the minimum, as is meant."""
 
 import cv2
 import numpy as np
@@ -25,9 +25,10 @@ def horn_schunck(
     start: Float[Array, "2 h w"] | None = None,
     grids: Multigrid | None = None,
 ) -> Minimum:
-    """The flow between two grey pictures that minimises Horn and Schunck's energy, to within `tolerance_px` rms.
+    """The flow between two grey pictures with the least energy, to within `tolerance_px` rms.
 
-    For motions up to a pixel or two; `estimate_flow` takes larger ones. `start` and `grids` are as in `minimise`.
+    For motions up to a pixel or two; `estimate_flow` takes larger ones. `start` and `grids` are as in
+    `minimise`.
     """
     equations = FlowEquations(*pair(first, second), alpha)
     return minimise(equations, tolerance_px=tolerance_px, start=start, grids=grids)
@@ -61,5 +62,7 @@ def horn_schunck_sweeps(
 def pair(first: Array, second: Array) -> Derivatives:
     """Derivatives of two pictures; raises BadParameter where their sizes differ."""
     if np.shape(first) != np.shape(second):
-        raise BadParameter("shape of the second picture", np.shape(second), f"{np.shape(first)}, as the first")
+        raise BadParameter(
+            "shape of the second picture", np.shape(second), f"{np.shape(first)}, as the first"
+        )
     return cube(first, second)

@@ -1,4 +1,4 @@
-"""A coarse grid of the multigrid method: its equations J w + c (d w − w̄) = b, sweeps, and the ways down and up."""
+"""A coarse grid: its equations J w + c (d w − w̄) = b, sweeps, and the ways down and up."""
 
 import cv2
 import numpy as np
@@ -14,10 +14,11 @@ __all__ = ["STIFFNESS", "Level"]
 STIFFNESS = 3.0
 """How stiff, in units of c, a pixel's data may count on the next coarser grid.
 
-Where J is far stiffer than c a pixel keeps its own flow whatever the smooth flow around it does; all it can do to
-its surroundings is to pull with at most c. So not J is averaged but what is left of it once the pixel itself has
-given way, k J (J + k)⁻¹ with k of the order of c, and b likewise. Averaging J itself makes coarse grids far too
-stiff along edges, and a cycle then contracts errors two to three times less. Between 2 and 4 it hardly matters.
+Where J is far stiffer than c a pixel keeps its own flow whatever the smooth flow around it does; all it can
+do to its surroundings is to pull with at most c. So not J is averaged but what is left of it once the pixel
+itself has given way, k J (J + k)⁻¹ with k of the order of c, and b likewise. Averaging J itself makes
+coarse grids far too stiff along edges, and a cycle then contracts errors two to three times less. Between 2
+and 4 it hardly matters.
 """
 
 

@@ -36,8 +36,9 @@ def minimise(
 ) -> Minimum:
     """Solve the equations until the flow is within `tolerance_px` (rms) of their solution.
 
-    The distance is the length of what the coarse grids make of the residual, which is nearly minimiser − flow once
-    sweeps have taken away what is rough; being nearly that it is also the next cycle's correction, and costs little.
+    The distance is the length of what the coarse grids make of the residual, which is nearly minimiser −
+    flow once sweeps have taken away what is rough; being nearly that it is also the next cycle's
+    correction, and costs little.
 
     Args:
         equations: What to solve.
@@ -48,6 +49,7 @@ def minimise(
     """
     if min(equations.shape) < 2:
         raise BadParameter("size of a picture", equations.shape[::-1], "at least 2x2 px")
+    lent = grids is not None
     grids = grids or Multigrid(equations.shape, equations.x.dtype.type)
     grids.take(equations)
     if start is None:
@@ -59,6 +61,6 @@ def minimise(
         correction = grids.correction()
         distance = CAUTION * float(np.sqrt(2 * np.mean(np.square(correction))))
         if distance <= tolerance_px or cycles >= most_cycles:
-            return Minimum(grids.flow.copy(), distance, cycles)
+            return Minimum(grids.flow.copy() if lent else grids.flow, distance, cycles)
         grids.improve(correction)
         cycles += 1

@@ -1,4 +1,4 @@
-"""Work in strips of rows that fit the cache: pictures of several planes do not, and then memory sets the pace."""
+"""Work in strips of rows that fit the cache, where several planes of a whole picture do not."""
 
 from collections.abc import Iterator
 from typing import NamedTuple

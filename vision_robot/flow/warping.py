@@ -23,5 +23,5 @@ class Warp:
         height, width = self._u.shape
         u, v = cv2.add(self._u, flow[0]), cv2.add(self._v, flow[1])
         back = cv2.remap(picture, u, v, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
-        inside = (cv2.inRange(u, 0, width - 1) & cv2.inRange(v, 0, height - 1)).astype(np.float32)
-        return back, inside / 255
+        inside = cv2.bitwise_and(cv2.inRange(u, 0, width - 1), cv2.inRange(v, 0, height - 1))
+        return back, inside.astype(np.float32) / 255
