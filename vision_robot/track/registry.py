@@ -13,7 +13,7 @@ __all__ = ["ENTRY_POINTS", "TRACKERS", "tracker_class", "tracker_named", "tracke
 
 TRACKERS: dict[str, str] = {
     "optical-flow": "vision_robot.track.optical_flow:OpticalFlow",
-    "optical-flow-plain": "vision_robot.track.optical_flow:OpticalFlowPlain",
+    "optical-flow-plain": "vision_robot.track.optical_flow_plain:OpticalFlowPlain",
     "rgb": "vision_robot.track.rgb:Rgb",
     "rgb-plain": "vision_robot.track.rgb_plain:RgbPlain",
     "background": "vision_robot.track.background:Background",
