@@ -1,4 +1,4 @@
-"""How true the truth is: outlines, flow and grasps of the rendered cell against judges that know nothing of it.
+"""How true the truth is: outlines, flow and grasps of the rendered cell against independent judges.
 
 - disc: centroid of an unhidden disc, flat and tilted, against the centre of its ellipse in closed form
 - counted: the mean of the mask's pixels against that same closed form, for comparison

@@ -16,12 +16,10 @@ CHECKED = [
     "vision_robot.geometry",
     "vision_robot.formats",
     "vision_robot.calibrate",
-    "vision_robot.track",
     "vision_robot.extrinsics",
-]
-CHECKED = ["vision_robot.geometry", "vision_robot.formats", "vision_robot.calibrate", "vision_robot.sim"]
     "vision_robot.dataset",
     "vision_robot.sim",
+    "vision_robot.track",
 ]
 
 # Annotations mean what they say, except that an int may stand where a float is asked for (PEP 484).

@@ -12,8 +12,6 @@ from typing import Any
 __all__ = [
     "BadArm",
     "AmbiguousPlane",
-    "AmbiguousPlane",
-    "BadArm",
     "BadCameraFile",
     "BadCornerFile",
     "BadFrame",
@@ -31,17 +29,11 @@ __all__ = [
     "BrokenPlugin",
     "ContradictingPoses",
     "DegeneratePoses",
-    "BadPort",
     "CommandRefused",
-    "CommandRefused",
-    "ContradictingPoses",
-    "DegeneratePoses",
     "DegenerateViews",
     "LinkMismatch",
     "MissingLimits",
     "EdgeOnPlane",
-    "EdgeOnPlane",
-    "MissingLimits",
     "MissingOpenGL",
     "MissingPackage",
     "MixedImageSizes",
@@ -61,7 +53,6 @@ __all__ = [
     "Unsynchronised",
     "UnlevelBoard",
     "Unreachable",
-    "UnknownStructure",
     "UnreadableImage",
     "UnwritableOutput",
     "VisionRobotError",
@@ -152,7 +143,8 @@ class Unreachable(VisionRobotError):
     def __init__(self, position_m: Sequence[float], short_m: float):
         self.position_m, self.short_m = tuple(map(float, position_m)), short_m
         where = ", ".join(f"{1000 * x:.0f}" for x in self.position_m)
-        super().__init__(f"the arm cannot reach ({where}) mm of the station: {1000 * short_m:.1f} mm are missing")
+        short = f"{1000 * short_m:.1f} mm are missing"
+        super().__init__(f"the arm cannot reach ({where}) mm of the station: {short}")
 
 
 class BadInput(VisionRobotError):
@@ -424,6 +416,8 @@ class BrokenPlugin(BadInput):
     def __init__(self, name: str, package: str, target: str, why: str):
         self.name, self.package, self.target, self.why = name, package, target, why
         super().__init__(f"{name} of package {package} ({target}) cannot be loaded ({why}): mend or remove")
+
+
 class BadPort(BadInput):
     """A serial port cannot be used."""
 
@@ -458,14 +452,6 @@ class BadGoal(BadInput):
     def __init__(self, row: int, why: str, where: str = ""):
         self.row, self.why, self.where = row, why, where
         super().__init__(f"{where or f'goal {row}'} cannot be used: {why}")
-
-
-class BadPath(BadInput):
-    """No branch of an arm follows a path to its end."""
-
-    def __init__(self, share: float, why: str):
-        self.share, self.why = share, why
-        super().__init__(f"the path can be followed for {100 * share:.0f} % of its way: {why}")
 
 
 class BadPath(BadInput):

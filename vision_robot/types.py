@@ -5,12 +5,9 @@ documentation at run time and are checked, with beartype, in the tests only.
 """
 
 import numpy as np
-from jaxtyping import Bool, Float, Int, UInt8, UInt16
+from jaxtyping import Bool, Float, Int, Integer, UInt8, UInt16
 
-__all__ = ["Array", "Bool", "Float", "Image", "Int", "UInt8", "UInt16"]
-from jaxtyping import Bool, Float, Int, Integer, UInt8
-
-__all__ = ["Array", "Bool", "Float", "Image", "Int", "Integer", "UInt8"]
+__all__ = ["Array", "Bool", "Float", "Image", "Int", "Integer", "UInt8", "UInt16"]
 
 Array = np.ndarray
 

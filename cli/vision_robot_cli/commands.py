@@ -60,7 +60,6 @@ IK: dict[str, Command] = {
     ),
     "stream": Command(
         "vision_robot_cli.ik_stream:ik_stream",
-        "Play a table of joint values to a microcontroller over a serial line.",
         "Send a table of joint values, or poses to be solved there, to a microcontroller.",
     ),
 }
@@ -81,9 +80,13 @@ TRACK: dict[str, Command] = {
 }
 
 COMMANDS: dict[str, Command | Group] = {
-    "benchmark": Command(
-        "vision_robot_cli.benchmark:benchmark",
-        "Scenes x methods x seeds -> scores with confidence intervals, ours beside the peers.",
+    "demo": Command(
+        "vision_robot_cli.demo:demo",
+        "The main job in one go: render a board, calibrate, show the camera beside the truth.",
+    ),
+    "doctor": Command(
+        "vision_robot_cli.doctor:doctor",
+        "What works on this machine: versions, OpenGL, video, GPU, compiler; and how to mend the rest.",
     ),
     "board": Command(
         "vision_robot_cli.board:board",
@@ -93,44 +96,41 @@ COMMANDS: dict[str, Command | Group] = {
         "vision_robot_cli.calibrate:calibrate",
         "Calibrate a camera from photos, a video, corner files or, with nothing given, a rendered set.",
     ),
-    "convert": Command(
-        "vision_robot_cli.convert:convert",
-        "A camera or rig file into any other tool's format.",
-    ),
-    "demo": Command(
-        "vision_robot_cli.demo:demo",
-        "The main job in one go: render a board, calibrate, show the camera beside the truth.",
-    ),
-    "doctor": Command(
-        "vision_robot_cli.doctor:doctor",
-        "What works on this machine: versions, OpenGL, video, GPU, compiler; and how to mend the rest.",
-    ),
     "extrinsics": Group(
         EXTRINSICS,
         "Where the camera is: on an arm, over a table, beside other cameras.",
-    ),
-    "measure": Command(
-        "vision_robot_cli.measure:measure",
-        "Pixels to millimetres on the work plane, each with its sigma.",
-    ),
-    "pick": Command(
-        "vision_robot_cli.pick:pick",
-        "Pick and place in MuJoCo's physics, open or closed loop, with a score and an error budget.",
     ),
     "undistort": Command(
         "vision_robot_cli.undistort:undistort",
         "Pictures or a video without lens distortion, and the camera they then have.",
     ),
+    "measure": Command(
+        "vision_robot_cli.measure:measure",
+        "Pixels to millimetres on the work plane, each with its sigma.",
+    ),
+    "convert": Command(
+        "vision_robot_cli.convert:convert",
+        "A camera or rig file into any other tool's format.",
+    ),
     "synth": Command(
         "vision_robot_cli.synth:synth",
         "Render a dataset with exact truth from a recipe: tracks, masks, flow, poses.",
-    "ik": Group(
-        IK,
-        "The arm: poses to joints, and C for its microcontroller.",
-        "An arm in an MJCF or URDF file: from poses to joints, and C for its microcontroller.",
+    ),
     "track": Group(
         TRACK,
         "Where objects are, how they lie, how fast they move; in pixels and millimetres.",
+    ),
+    "ik": Group(
+        IK,
+        "An arm in an MJCF or URDF file: from poses to joints, and C for its microcontroller.",
+    ),
+    "pick": Command(
+        "vision_robot_cli.pick:pick",
+        "Pick and place in MuJoCo's physics, open or closed loop, with a score and an error budget.",
+    ),
+    "benchmark": Command(
+        "vision_robot_cli.benchmark:benchmark",
+        "Scenes x methods x seeds -> scores with confidence intervals, ours beside the peers.",
     ),
 }
 

@@ -42,7 +42,7 @@ def ik_stream(
     silence: Annotated[
         float | None,
         typer.Option(
-            help="Seconds without a command after which the microcontroller stops the arm by itself; 0: never. "
+            help="Seconds without a command after which the microcontroller stops the arm itself; 0: never. "
             "Else a second more than the longest step of the table."
         ),
     ] = None,

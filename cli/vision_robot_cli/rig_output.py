@@ -128,9 +128,8 @@ def as_text(found: RigFound, given: RigInput, seed: int = 0) -> str:
 
 def write_report(found: RigFound, given: RigInput, path: Path, seed: int) -> None:
     """Write --report."""
-    from vision_robot.report.rig import rig_page
-
     from vision_robot.report.page import write_page
+    from vision_robot.report.rig import rig_page
 
     page = rig_page(
         found.fit,

@@ -1,4 +1,4 @@
-"""`vr extrinsics plane`, `rig` and `tool` as a person runs them, and `vr measure` and `vr undistort` after them."""
+"""`vr extrinsics plane`, `rig` and `tool` as a person runs them; then `vr measure` and `vr undistort`."""
 
 import json
 from pathlib import Path
@@ -42,18 +42,9 @@ def table(tmp_path_factory) -> Path:
     offset = ",".join(f"{1000 * part:.6f}mm" for part in laid.translation[:2])
     truth = WorkPlane.exact(made.camera, made.cam_from_station)
     write_work_plane(truth, folder / "truth.json")
-    done = run(
-        [
-            "extrinsics",
-            "plane",
-            str(folder / "photos"),
-            "--camera",
-            str(folder / "camera.json"),
-            "--offset",
-            offset,
-        ]
-        + ["--height", "3mm", "-o", str(folder / "plane.json"), "--report", str(folder / "plane.html")]
-    )
+    given = [str(folder / "photos"), "--camera", str(folder / "camera.json"), "--offset", offset]
+    written = ["--height", "3mm", "-o", str(folder / "plane.json"), "--report", str(folder / "plane.html")]
+    done = run(["extrinsics", "plane", *given, *written])
     assert done == 0
     return folder
 
@@ -146,7 +137,7 @@ def test_measure_refuses_what_sees_no_plane(table, capsys, tmp_path):
 
 
 def test_the_worked_example_of_the_origin_measured_rightly(capsys, tmp_path):
-    """MATLAB's export is converted, and pixel (320, 240) of MATLAB means what K [r1 r2 t] says, not the text."""
+    """MATLAB's export is converted, and pixel (320, 240) means what K [r1 r2 t] says, not the text."""
     transposed = np.array([[1064, 0, 0], [-0.8118, 1065.8, 0], [258.3899, 295.171, 1]])
     R = np.array([[0.9992, 0.0027, -0.0399], [-0.002, 0.9999, 0.0136], [0.0399, -0.0162, 0.9991]])
     t = np.array([-226.1425, -166.5716, 1240.0])

@@ -9,11 +9,6 @@ from vision_robot.types import Array, Float
 
 __all__ = ["Trajectory", "timed"]
 
-GRID = 201
-"""Points of the path at which limits are looked at."""
-
-MARGIN = 0.96
-"""Share of the accelerations that is used there, so that they hold between the points too."""
 GRID = 401
 """Points of the path at which limits are looked at."""
 
@@ -59,19 +54,10 @@ def timed(
     for name, limit in (("velocity", velocity), ("acceleration", acceleration)):
         if limit.shape != q.shape[1:] or not (np.isfinite(limit) & (limit > 0)).all():
             raise BadParameter(f"{name} limits", limit.tolist(), f"{q.shape[1]} positive numbers")
-    acceleration = MARGIN * acceleration
     s, path, first, second = _smooth(q)
     if s is None:
         still = np.zeros((1, q.shape[1]))
         return Trajectory(joint_names, np.zeros(1), q[:1], still, still)
-    step = s[1] - s[0]
-    fastest = _square_limits(first, velocity)
-    braking = np.zeros(len(s))
-    for k in range(len(s) - 2, -1, -1):
-        braking[k] = _most(first[k], second[k], acceleration, fastest[k], braking[k + 1], step)
-    square, push = np.zeros(len(s)), np.zeros(len(s))
-    for k in range(len(s) - 1):
-        _, high = _pushes(first[k], second[k], acceleration, square[k])
     step = float(s[1] - s[0])
     fastest = _square_limits(first, velocity)
     room = np.ones(len(s))
@@ -113,13 +99,6 @@ def _fastest(
     push[-1] = push[-2]
     speed = np.sqrt(square)
     times = np.concatenate([[0.0], np.cumsum(2 * step / np.maximum(speed[1:] + speed[:-1], 1e-12))])
-    return Trajectory(
-        joint_names,
-        times,
-        path,
-        first * speed[:, None],
-        first * push[:, None] + second * square[:, None],
-    )
     pushes = first * push[:, None] + second * square[:, None]
     return Trajectory(joint_names, times, path, first * speed[:, None], pushes)
 

@@ -44,7 +44,6 @@ def manipulability(jacobian: Float[Array, "*rows 6 n"]) -> Float[Array, "*rows"]
     return np.sqrt(np.maximum(np.linalg.det(J @ np.swapaxes(J, -1, -2)), 0.0))
 
 
-def workspace(ik: InverseKinematics, *, height_m: float | None = None, cells: int = 81) -> Workspace:
 def workspace(ik: InverseKinematics, *, height_m: float | None = None, cells: int = 121) -> Workspace:
     """Both slices of the workspace with the tool down; without a height the one that most places share.
 

@@ -18,8 +18,6 @@ __all__ = [
     "Camera",
     "HandEye",
     "CameraRig",
-    "CameraRig",
-    "HandEye",
     "KnownCamera",
     "Lens",
     "SerialChain",

@@ -1,4 +1,4 @@
-"""What may be wrong with a cell: faults by name, each changing the truth and telling the controller nothing."""
+"""What may be wrong with a cell: faults change the truth and tell the controller nothing."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
