@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from vision_robot_cli.arm_options import ArmBase, ArmLimits, ArmTool
+from vision_robot_cli.arm_choice import ArmSource, Base, Limit, TaskName, Tool, Wrist, arm_of, task_of
 from vision_robot_cli.options import Json, Seed
 
 if TYPE_CHECKING:
@@ -15,9 +15,7 @@ __all__ = ["ik_export"]
 
 
 def ik_export(
-    arm: Annotated[
-        str, typer.Argument(help="MJCF or URDF file, or column: the arm that comes with the tool.")
-    ] = "column",
+    arm: ArmSource = "column",
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the C files.")] = Path("arm_c"),
     method: Annotated[
         str,
@@ -27,12 +25,11 @@ def ik_export(
         str, typer.Option(help="single or double. A Cortex-M4F computes only singles in hardware.")
     ] = "single",
     target: Annotated[str, typer.Option(help="What the Makefile compiles for: cortex-m4f.")] = "cortex-m4f",
-    task: Annotated[
-        str, typer.Option(help="What of the goal counts: pose, axis, tilt or position.")
-    ] = "pose",
-    tool: ArmTool = None,
-    base: ArmBase = None,
-    limit: ArmLimits = None,
+    task: TaskName = "pose",
+    tool: Tool = None,
+    wrist: Wrist = None,
+    base: Base = None,
+    limit: Limit = None,
     seed: Seed = 0,
     json: Json = False,
 ) -> None:
@@ -42,18 +39,12 @@ def ik_export(
 
     Example: vr ik export my_arm.xml -o firmware/ik --precision single
     """
-    from vision_robot.arm import Task
     from vision_robot.arm.export_c import export_c
-    from vision_robot.errors import BadParameter
-    from vision_robot_cli.arm_options import arm_of
     from vision_robot_cli.output import emit_json
 
-    names = [one.value for one in Task]
-    if task not in names:
-        raise BadParameter("--task", task, "one of " + ", ".join(names))
-    robot = arm_of(arm, tool, base, limit)
+    robot = arm_of(arm, tool, wrist, base, limit)
     export = export_c(
-        robot, out, method=method, precision=precision, task=Task(task), target=target, seed=seed
+        robot, out, method=method, precision=precision, task=task_of(task), target=target, seed=seed
     )
     if json:
         emit_json("ik.export", figures(export))

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from vision_robot_cli.arm_choice import Base, Limit, TaskName, Tool, Wrist
+from vision_robot_cli.arm_choice import ArmOption, Base, Limit, TaskName, Tool, Wrist
 from vision_robot_cli.options import Json, Out
 
 __all__ = ["ik_solve"]
@@ -26,9 +26,7 @@ def ik_solve(
     station: Annotated[
         Path | None, typer.Option(help="Pose file of base_from_station; goals are then on the station.")
     ] = None,
-    arm: Annotated[
-        str, typer.Option(help="MJCF or URDF file, or column: the arm that comes with the tool.")
-    ] = "column",
+    arm: ArmOption = "column",
     tool: Tool = None,
     wrist: Wrist = None,
     base: Base = None,

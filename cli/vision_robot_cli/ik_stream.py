@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from vision_robot_cli.arm_options import ArmBase, ArmFile, ArmLimits, ArmTool
+from vision_robot_cli.arm_choice import ArmOption, Base, Limit, Tool, Wrist
 from vision_robot_cli.options import Json
 
 __all__ = ["ik_stream"]
@@ -49,10 +49,11 @@ def ik_stream(
     out: Annotated[
         Path | None, typer.Option("-o", "--out", help="CSV of the joints the microcontroller answered.")
     ] = None,
-    arm: ArmFile = "column",
-    tool: ArmTool = None,
-    base: ArmBase = None,
-    limit: ArmLimits = None,
+    arm: ArmOption = "column",
+    tool: Tool = None,
+    wrist: Wrist = None,
+    base: Base = None,
+    limit: Limit = None,
     json: Json = False,
 ) -> None:
     """Play a table to a microcontroller that runs the code of `vr ik export`.
@@ -65,7 +66,7 @@ def ik_stream(
     """
     from vision_robot.errors import BadParameter
     from vision_robot_cli import stream_table
-    from vision_robot_cli.arm_options import arm_of
+    from vision_robot_cli.arm_choice import arm_of
     from vision_robot_cli.output import emit_json
 
     for option, value in (("--rate", rate), ("--period", period)):
@@ -73,7 +74,7 @@ def ik_stream(
             raise BadParameter(option, value, "above 0")
     if station and not poses:
         raise BadParameter("--station", str(station), "given together with --poses")
-    robot = arm_of(arm, tool, base, limit)
+    robot = arm_of(arm, tool, wrist, base, limit)
     rows = stream_table.poses(table, station, period) if poses else stream_table.joints(table, robot)
     told: dict[str, object] = {"rows": len(rows), "duration_s": float(rows.time_s[-1]) / rate, "port": port}
     if port is not None:

@@ -1,6 +1,6 @@
 """Running the episodes that `vr pick` asks for."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -63,12 +63,12 @@ def pick_run(
     return PickRun(plan, faults, episodes, budget)
 
 
-def _episodes(world: World, plan: Plan, seeds: Sequence[int], workers: int):
+def _episodes(world: World, plan: Plan, seeds: Sequence[int], workers: int) -> Iterable[Episode]:
     if workers == 1:
         return (run_episode(world, plan, one) for one in seeds)
     from joblib import Parallel, delayed
 
-    run = Parallel(n_jobs=workers, backend="loky", return_as="generator")
+    run: Any = Parallel(n_jobs=workers, backend="loky", return_as="generator")
     return run(delayed(run_episode)(world, plan, one) for one in seeds)
 
 

@@ -53,8 +53,8 @@ def test_limits_from_the_command_line_are_in_the_code(tmp_path):
     [
         (["column", "--precision", "half"], BadParameter, "single or double"),
         (["column", "--task", "look"], BadParameter, "pose, axis, tilt, position"),
-        (["column", "--limit", "theta2=1..2"], BadParameter, "with a unit"),
-        (["column", "--limit", "theta2=2..1rad"], BadParameter, "JOINT=LEAST..GREATEST"),
+        (["column", "--limit", "theta2=1..2"], BadParameter, "with m, mm, rad or deg"),
+        (["column", "--limit", "theta2=2..1rad"], BadParameter, "first value is the lesser"),
         (["column", "--limit", "theta9=1..2rad"], BadParameter, "one of d1"),
         (["none.xml"], BadArm, "no such file"),
     ],

@@ -58,7 +58,7 @@ def _paint(canvas: "Canvas", part: Slice, best: float, up: str, level_mm: float 
     if level_mm is not None:
         axes.axhline(level_mm, color=INK, linewidth=0.8, linestyle=(0, (1, 2)))
     axes.set_aspect("equal")
-    axes.set_ylim(*_extent(y, part.reached.any(axis=1), x[-1] - x[0]))
+    axes.set_ylim(*_extent(y, np.any(part.reached, axis=1), x[-1] - x[0]))
     axes.set_xlabel("x [mm]")
     axes.set_ylabel(up)
     axes.grid(color=FAINT, linewidth=0.3)

@@ -5,7 +5,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-import vision_robot.arm
+import vision_robot
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3
 from vision_robot.sim.cell_design import ArmMount, Colour, Item
@@ -18,7 +18,7 @@ __all__ = ["add_arm", "add_item"]
 MjSpec: TypeAlias = Any
 MjsBody: TypeAlias = Any
 
-OWN_ARM = Path(vision_robot.arm.__file__).parent / "models" / "column_arm.xml"
+OWN_ARM = Path(vision_robot.__file__).parent / "arm" / "models" / "column_arm.xml"
 
 
 def add_item(mj: Any, spec: MjSpec, item: Item, base_from_station: SE3) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from importlib import import_module
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import entry_points
 from typing import Any
 
 from vision_robot.errors import BadParameter, BrokenPlugin
@@ -54,11 +54,12 @@ def tracker_named(name: str, options: Mapping[str, Any] | None = None) -> Tracke
     return cls(options_of(cls.Options, options or {}, name))
 
 
-def _plugins() -> dict[str, EntryPoint]:
+def _plugins() -> dict[str, Any]:
+    """EntryPoints by name; where the back-port of importlib.metadata is installed they are its own."""
     return {entry.name: entry for entry in entry_points(group=ENTRY_POINTS)}
 
 
-def _loaded(entry: EntryPoint) -> type[Tracker]:
+def _loaded(entry: Any) -> type[Tracker]:
     package = entry.dist.name if entry.dist else "an unnamed package"
     try:
         cls = entry.load()
