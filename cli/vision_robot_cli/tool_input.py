@@ -108,7 +108,8 @@ def _placed(name: str, file: Path) -> TipView:
     return TipView(name, KnownCamera.exact(known.camera), _none(0), 1.0, base_from_cam.inverse(), covariance)
 
 
-def _from_table(path: Path, count: int) -> Float[Array, "n 2"]:
+def _from_table(path: Path, count: int) -> tuple[Float[Array, "n 2"], float]:
+    """Pixels by pose, all of one weight: their noise is found from the residuals."""
     table = read_table(path, ("pose", "u_px", "v_px"))
     pixels = _none(count)
     for line, (pose, u, v) in enumerate(
@@ -119,7 +120,7 @@ def _from_table(path: Path, count: int) -> Float[Array, "n 2"]:
         if np.isfinite(pixels[int(pose) - 1]).all():
             raise BadTable(path, f"line {line}: pose {pose:g} is there twice")
         pixels[int(pose) - 1] = u, v
-    return pixels
+    return pixels, 1.0
 
 
 def _from_pictures(

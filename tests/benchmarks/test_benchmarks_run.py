@@ -10,13 +10,21 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("name", ["coverage", "hand_eye", "next_view", "refinement"])
-@pytest.mark.parametrize("name", ["coverage", "measure", "next_view", "refinement", "triangulation"])
-@pytest.mark.parametrize("name", ["coverage", "next_view", "refinement", "truth_accuracy", "truth_speed"])
-@pytest.mark.parametrize("name", ["coverage", "next_view", "refinement", "ik_export"])
-@pytest.mark.parametrize(
-    "name", ["coverage", "next_view", "refinement", "synth_speed", "truth_accuracy", "truth_speed"]
-)
+QUICK = [
+    "coverage",
+    "hand_eye",
+    "ik_export",
+    "measure",
+    "next_view",
+    "refinement",
+    "synth_speed",
+    "triangulation",
+    "truth_accuracy",
+    "truth_speed",
+]
+
+
+@pytest.mark.parametrize("name", QUICK)
 def test_it_runs(name):
     script = ROOT / "benchmarks" / f"{name}.py"
     done = subprocess.run(

@@ -62,14 +62,14 @@ def test_everything_at_once(capsys, clip, tmp_path):
 
 def test_the_result_for_a_person_and_options_from_a_file(capsys, clip, tmp_path):
     config = tmp_path / "trackers.toml"
-    config.write_text("[background]\nwindow = 9\nspan_s = 1.0\n[rgb]\ntolerance = 20.0\n")
+    config.write_text("[background]\nwindow = 21\n[rgb]\ntolerance = 20.0\n")
     assert run(["track", "video", str(clip), "--config", str(config), "--set", "background.hold_s=5"]) == 0
     out = capsys.readouterr().out
     assert "40 frames, 2 objects" in out
     assert "noise" in out
     words = ["track", "video", str(clip), "--config", str(config), "--options"]
     assert run(words) == 0
-    assert "background.window = 9" in capsys.readouterr().out
+    assert "background.window = 21" in capsys.readouterr().out
 
 
 def test_pick_shows_the_mask_and_suggests(capsys, clip, tmp_path):
