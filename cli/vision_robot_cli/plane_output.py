@@ -125,9 +125,8 @@ def as_text(found: PlaneFound, given: PlaneInput) -> str:
 
 def write_report(found: PlaneFound, given: PlaneInput, path: Path, seed: int) -> None:
     """Write --report."""
-    from vision_robot.report.plane import plane_page
-
     from vision_robot.report.page import write_page
+    from vision_robot.report.plane import plane_page
 
     page = plane_page(
         found.fit,

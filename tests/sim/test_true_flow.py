@@ -9,9 +9,19 @@ import pytest
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3, Camera, pixel_grid
 from vision_robot.sim.cell import Cell
-from vision_robot.sim.cell_design import ArmMount, CellDesign, Item, Lights, StationCamera, Table, look_at
+from vision_robot.sim.cell_design import (
+    ArmMount,
+    Belt,
+    CellDesign,
+    Item,
+    Lights,
+    StationCamera,
+    Table,
+    look_at,
+)
 from vision_robot.sim.gl import load_mujoco
 from vision_robot.sim.paths import Circle, Straight
+from vision_robot.sim.surfaces import BELT_PITCH_M
 from vision_robot.sim.true_flow import true_flow
 from vision_robot.sim.truth import TruthFrame, TruthRenderer
 
@@ -196,3 +206,19 @@ def test_frames_that_make_no_flow_are_refused():
         true_flow(deep, replace(deep, camera=CAMERAS["fisheye"]))
     assert not true_flow(deep, deep).flow_px.any()
     assert not true_flow(deep, deep).occluded.any()
+
+
+def test_a_belt_flows_on_when_its_picture_jumps_back():
+    """The belt that is seen jumps back by a pitch each second here; its flow is that of the rubber."""
+    belt = Belt(speed_m_s=BELT_PITCH_M, width_m=0.2)
+    cell, view = Cell(CellDesign(lights=PLAIN, belt=belt)), view_of("pinhole")
+    with TruthRenderer(cell, view, depth=True) as eye:
+        frames = []
+        for time_s in (0.85, 0.95, 1.05):
+            cell.at(time_s)
+            frames.append(eye.frame())
+    smooth, jumping = (true_flow(*frames[k : k + 2]) for k in (0, 1))
+    middle = np.s_[80:100, 110:130]
+    assert np.hypot(*smooth.flow_px[middle].reshape(-1, 2).T).min() > 3
+    assert np.allclose(jumping.flow_px[middle], smooth.flow_px[middle], atol=1e-3)
+    assert not jumping.occluded[middle].any()

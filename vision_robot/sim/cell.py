@@ -242,6 +242,15 @@ class Cell:
         R, t = self.data.xmat[self.bodies].reshape(-1, 3, 3), self.data.xpos[self.bodies]
         return self._station_from_base @ SE3(R, t)
 
+    def base_from_bodies(self) -> SE3:
+        """True poses of all bodies of the model in {B}; the belt's as if its picture never jumped back."""
+        R, t = self.data.xmat.reshape(-1, 3, 3).copy(), self.data.xpos.copy()
+        belt = self.design.belt
+        if belt is not None:
+            jumped = belt.speed_m_s * self.time_s - np.mod(belt.speed_m_s * self.time_s, BELT_PITCH_M)
+            t[int(self.model.body(BELT).id)] += self.base_from_station.rotation @ [0.0, jumped, 0.0]
+        return SE3(R, t)
+
     def velocity(self, name: str) -> Float[Array, "6"]:
         """True velocity of its middle [m/s], then angular velocity [rad/s], both in axes of {S}."""
         item = self._items.get(name)

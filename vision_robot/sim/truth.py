@@ -107,9 +107,7 @@ class TruthRenderer:
         fallen = (cell.station_from_tracked().translation[:, 2] < -0.005).any()
         hidden = () if self.depth or fallen else (BACKGROUND,)
         bodies, depth = self._renderer.bodies(camera, base_from_cam, hidden_groups=hidden, depth=self.depth)
-        data = cell.data
-        base_from_body = SE3(data.xmat.reshape(-1, 3, 3).copy(), data.xpos.copy())
-        cam_from_body = base_from_cam.inverse() @ base_from_body
+        cam_from_body = base_from_cam.inverse() @ cell.base_from_bodies()
         return TruthFrame(
             time_s=cell.time_s,
             camera=camera,
