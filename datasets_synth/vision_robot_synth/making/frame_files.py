@@ -1,14 +1,13 @@
 """Where the files of a frame are, and the notes by which a killed run goes on."""
 
-import pickle
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
 from vision_robot.files import write_bytes
-from vision_robot.sim.object_truth import ObjectTruth
+from vision_robot_synth.making.frame_note import FrameNote
 
-__all__ = ["FRAME", "MASK", "FrameNote", "Workshop", "flow_pattern"]
+__all__ = ["FRAME", "MASK", "Workshop", "flow_pattern"]
 
 FRAME, MASK = "frames/{:06d}.png", "truth/masks/{:06d}.png"
 
@@ -16,15 +15,6 @@ FRAME, MASK = "frames/{:06d}.png", "truth/masks/{:06d}.png"
 def flow_pattern(suffix: str) -> str:
     """Where the flow of a frame is."""
     return f"truth/flow/{{:06d}}.{suffix}"
-
-
-@dataclass(frozen=True)
-class FrameNote:
-    """What the tables of the dataset need to know of a frame."""
-
-    objects: ObjectTruth
-    runs: dict[int, list[int]]
-    """COCO's run lengths of each id that is seen."""
 
 
 @dataclass(frozen=True)
@@ -50,12 +40,11 @@ class Workshop:
 
     def finish(self, frame: int, note: FrameNote) -> None:
         """Note that a frame is done."""
-        write_bytes(self.notes / f"{frame:06d}", pickle.dumps(note))
+        write_bytes(self.notes / f"{frame:06d}", note.to_bytes())
 
     def note(self, frame: int) -> FrameNote:
         """The note of a finished frame."""
-        # These bytes are this program's own, under a name that says from what they were made.
-        return pickle.loads((self.notes / f"{frame:06d}").read_bytes())
+        return FrameNote.from_bytes((self.notes / f"{frame:06d}").read_bytes())
 
     def missing(self, count: int) -> list[int]:
         """Frames that are not done."""

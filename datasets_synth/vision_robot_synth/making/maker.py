@@ -11,7 +11,8 @@ from vision_robot.dataset.mask_files import encode_ids, encode_runs
 from vision_robot.sim.true_flow import true_flow
 from vision_robot.sim.truth import TruthFrame, TruthRenderer
 from vision_robot.types import Image
-from vision_robot_synth.making.frame_files import FRAME, MASK, FrameNote, Workshop, flow_pattern
+from vision_robot_synth.making.frame_files import FRAME, MASK, Workshop, flow_pattern
+from vision_robot_synth.making.frame_note import FrameNote
 from vision_robot_synth.scene.scene import Scene
 from vision_robot_synth.scene.stage import Stage
 from vision_robot_synth.sensor import mean_of

@@ -10,7 +10,8 @@ import numpy as np
 from vision_robot.dataset.mot import mot_text, sequence_text
 from vision_robot.sim.truth_tracks import truth_tracks
 from vision_robot.tracks import Tracks
-from vision_robot_synth.making.frame_files import FRAME, FrameNote
+from vision_robot_synth.making.frame_files import FRAME
+from vision_robot_synth.making.frame_note import FrameNote
 from vision_robot_synth.scene.scene import Scene
 
 __all__ = ["camera_table", "coco_text", "mot_table", "sequence_file", "tracks_of"]
