@@ -13,6 +13,7 @@ ROOT = Path(__file__).parents[2]
 QUICK = [
     "coverage",
     "hand_eye",
+    "ik",
     "ik_export",
     "measure",
     "next_view",
