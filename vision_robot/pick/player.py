@@ -29,6 +29,8 @@ class Player:
 
     def __init__(self, cell: Cell, world: World, solver: InverseKinematics):
         self.cell, self.world, self.solver = cell, world, solver
+        self.phase = ""
+        """What the arm is doing, in a word or two: for who watches."""
         self._told = world.told_joints(cell.joints)
         self._side = np.zeros(len(self._told))
         slides = world.arm.chain.slides
