@@ -23,7 +23,10 @@ def pick(
         ),
     ] = None,
     budget: Annotated[
-        bool, typer.Option("--budget", help="Also share the error out among the stages (12 s a seed).")
+        bool,
+        typer.Option(
+            "--budget", help="Also share the error out among the stages, foretold and measured (2 s a seed)."
+        ),
     ] = False,
     min_success: Annotated[
         float | None, typer.Option(help="Exit with 3 when the share of grasps is below this.")
