@@ -107,6 +107,7 @@ class ClosedLoop:
                     (cell.station_from(self.thing).translation - cell.station_from_tool.translation)[:2]
                 )
             )
+        player.remark = f"look {len(self.looks) + 1} asked for {1000 * size:.1f} mm"
         self.looks.append(Look(cell.time_s, size, height, off))
         return size
 

@@ -78,7 +78,11 @@ def run_episode(
         try:
             seen = look(cell, eye, tracker, name, world)
         except NothingSeen as error:
-            return replace(episode, failure=str(error))
+            episode = replace(episode, failure=str(error))
+            if witness is not None:
+                witness.unseen(cell, eye, episode)
+                witness.ends(episode)
+            return episode
         if "tracking" in plan.true_stages:
             seen = eye.truth_of(name)
         where = sighting(believed.plane, seen, height)

@@ -10,6 +10,7 @@ from vision_robot.geometry import SE3
 from vision_robot.pick.sighting import Seen
 from vision_robot.pick.world import World
 from vision_robot.sim.cell import Cell
+from vision_robot.sim.cell_design import StationCamera
 from vision_robot.sim.truth import TruthRenderer
 from vision_robot.track.blobs import Blobs
 from vision_robot.track.tracker import Tracker
@@ -54,6 +55,14 @@ class Eye:
     def picture(self) -> Image:
         """What the controller gets to see."""
         return self._spoilt(self._renderer.picture())
+
+    def plain(self) -> Image:
+        """The same without the sensor's noise, for who only watches: no chance is used up."""
+        return self._renderer.picture()
+
+    def through(self, view: StationCamera) -> Image:
+        """What a camera elsewhere would see, for who only watches."""
+        return self._renderer.through(view)
 
     @property
     def time_s(self) -> float:

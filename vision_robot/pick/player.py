@@ -31,6 +31,8 @@ class Player:
         self.cell, self.world, self.solver = cell, world, solver
         self.phase = ""
         """What the arm is doing, in a word or two: for who watches."""
+        self.remark = ""
+        """What was found on the way, for who watches."""
         self._told = world.told_joints(cell.joints)
         self._side = np.zeros(len(self._told))
         slides = world.arm.chain.slides

@@ -21,6 +21,10 @@ class Witness(Protocol):
         """The thing was seen at `where`; the arm has not moved yet."""
         ...
 
+    def unseen(self, cell: Cell, eye: Eye, episode: Episode) -> None:
+        """The tracker said nothing, and nothing is done."""
+        ...
+
     def ends(self, episode: Episode) -> None:
         """All is at rest."""
         ...
