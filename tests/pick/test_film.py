@@ -41,7 +41,7 @@ def test_stills_are_one_of_each_phase_and_marks_lie_on_the_thing():
 
 
 def test_looks_of_a_closed_loop_stand_in_the_film_and_in_the_episode():
-    episode = run_episode(ordinary_world(shadows=False), replace(PLAN, loop="look-move-look"), 1)
+    episode = run_episode(ordinary_world(shadows=False), replace(PLAN, loop="look-move-look"), 2)
     assert len(episode.course) == episode.looks - 1
     errors = [look.error_m for look in episode.course]
     assert errors[0] > 0
