@@ -1,0 +1,139 @@
+"""Before the arm goes for a thing: seeing it, choosing a grasp, and putting aside what is in the way."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from vision_robot.errors import InTheWay
+from vision_robot.pick.episode import Episode, axis_angle
+from vision_robot.pick.grasps import FLOOR_M, Grasp, Target, footprint_of, grasps_of, symmetry_of
+from vision_robot.pick.knowledge import Knowledge
+from vision_robot.pick.look import LIES, Eye, survey
+from vision_robot.pick.obstacles import HEIGHT_M, Obstacle, free_target, obstacles_of
+from vision_robot.pick.open_loop import Hand
+from vision_robot.pick.player import Player
+from vision_robot.pick.sighting import Sighting, sighting
+from vision_robot.sim.cell_design import Item
+from vision_robot.sim.fingers import Fingers
+from vision_robot.sim.scatter import apart, outline
+from vision_robot.track.tracker import Tracker
+
+__all__ = ["Attempt"]
+
+MOST_CLEARED = 3
+"""Things that are put aside before the thing itself is given up."""
+
+ASIDE_M = 0.015
+"""Kept around what is put aside."""
+
+ROUGHLY = 0.010
+"""Clearance of each finger from a thing whose shape is not known [m]."""
+
+
+@dataclass
+class Attempt:
+    """Eye, tracker and arm of one episode, with what its controller believes."""
+
+    eye: Eye
+    player: Player
+    believed: Knowledge
+    tracker: Tracker
+    true_tracking: bool = False
+    obstacles: list[Obstacle] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        fingers = self.player.cell.fingers
+        assert fingers is not None, "an arm with a gripper"
+        self.fingers: Fingers = fingers
+        self.item: Item = self.player.world.design.items[0]
+        self.waiting = self.player.joints
+        """Where the arm waits and hides nothing."""
+
+    def found(self, *, again: bool = False) -> Target:
+        """The thing by a look at the table, with its best grasp. Raises NothingSeen, GripperTooNarrow."""
+        cell, world = self.player.cell, self.player.world
+        if again:
+            self.player.move_to(self.waiting)
+        arrival = LIES if again else None
+        seen = survey(cell, self.eye, self.tracker, self.item.name, world, arrival, self.believed.plane)
+        thing = self.eye.truth_of(self.item.name) if self.true_tracking else seen.thing
+        self.obstacles = obstacles_of(self.believed.plane, seen.others)
+        where = sighting(self.believed.plane, thing, self.item_height_m)
+        return Target(where, self.grasps[0], symmetry_of(self.item))
+
+    @property
+    def item_height_m(self) -> float:
+        """Of its middle over the table, known from its size."""
+        return self.item.size_m[-1] / 2
+
+    @property
+    def grasps(self) -> list[Grasp]:
+        """All grasps of the thing."""
+        return grasps_of(self.item, self.fingers, self.player.cell.opening_limits_m[1])
+
+    def seen(self, episode: Episode, target: Target) -> Episode:
+        """The episode with how well the thing was seen."""
+        there = episode.station_from_object
+        off = target.where.position_m - there.translation[:2]
+        half = target.symmetry_rad / 2
+        turn = target.where.yaw_rad - axis_angle(there.rotation, 0)
+        yaw = float((turn + half) % (2 * half) - half) if half else np.nan
+        return replace(episode, seen_error_m=float(np.linalg.norm(off)), seen_yaw_error_rad=yaw)
+
+    def free(self, target: Target) -> tuple[Target, int]:
+        """A grasp that keeps clear of all else, and how many things had to be put aside for it.
+
+        Raises InTheWay where that does not help, and Unreachable.
+        """
+        for cleared in range(MOST_CLEARED + 1):
+            try:
+                where, turn = target.where, target.symmetry_rad
+                found = free_target(self.item.name, where, self.grasps, turn, self.fingers, self.obstacles)
+                return found, cleared
+            except InTheWay as blocked:
+                if cleared == MOST_CLEARED:
+                    raise
+                self._put_aside(blocked, target)
+            target = self.found(again=True)
+        raise AssertionError("the last round returns or raises")
+
+    def _put_aside(self, blocked: InTheWay, target: Target) -> None:
+        """Take what blocks across its narrow side, and put it where there is room."""
+        one = self.obstacles[blocked.which]
+        rest = [other for k, other in enumerate(self.obstacles) if k != blocked.which]
+        thing = Obstacle(target.where, footprint_of(self.item))
+        width = one.size_m[1]
+        opening = width + 2 * ROUGHLY
+        if opening > self.player.cell.opening_limits_m[1]:
+            raise blocked
+        height = max(HEIGHT_M / 2, self.fingers.tip_m + FLOOR_M)
+        grasp = Grasp((0.0, 0.0), 0.0, width, opening, height)
+        try:
+            own = free_target("", one.where, [grasp], np.pi, self.fingers, [thing, *rest])
+        except InTheWay:
+            raise blocked from None
+        aside = self._room(one, [thing, *rest])
+        if aside is None:
+            raise blocked
+        hand = Hand(self.player, self.believed)
+        self.player.phase = "clear"
+        self.player.grip(opening, seconds=0.2)
+        hand.down_on(own.aim)
+        hand.close()
+        hand.up_from(own.aim)
+        hand.put_down(own.aim_at(aside), opening)
+
+    def _room(self, one: Obstacle, others: list[Obstacle]) -> Sighting | None:
+        """The nearest place where it lies clear of everything and of where the thing is to go."""
+        x, y, yaw = self.player.world.place
+        goal = outline(self.item, x, y, yaw)
+        left, bottom, right, top = self.player.world.design.scatter_m
+        places = np.stack(np.meshgrid(np.linspace(left, right, 9), np.linspace(bottom, top, 11)), axis=-1)
+        flat = places.reshape(-1, 2)
+        order = np.argsort(np.linalg.norm(flat - one.where.position_m, axis=1))
+        for place in flat[order]:
+            moved = replace(one, where=replace(one.where, position_m=place))
+            taken = [goal, *(other.corners for other in others)]
+            if all(apart(moved.corners, corners) >= ASIDE_M for corners in taken):
+                return moved.where
+        return None
