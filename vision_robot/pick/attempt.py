@@ -49,8 +49,8 @@ class Attempt:
         self.waiting = self.player.joints
         """Where the arm waits and hides nothing."""
 
-    def found(self, *, again: bool = False) -> Target:
-        """The thing by a look at the table, with its best grasp. Raises NothingSeen, GripperTooNarrow."""
+    def found(self, *, again: bool = False) -> Sighting:
+        """The thing and, in `obstacles`, all else, by a look at the table. Raises NothingSeen."""
         cell, world = self.player.cell, self.player.world
         if again:
             self.player.move_to(self.waiting)
@@ -58,8 +58,7 @@ class Attempt:
         seen = survey(cell, self.eye, self.tracker, self.item.name, world, arrival, self.believed.plane)
         thing = self.eye.truth_of(self.item.name) if self.true_tracking else seen.thing
         self.obstacles = obstacles_of(self.believed.plane, seen.others)
-        where = sighting(self.believed.plane, thing, self.item_height_m)
-        return Target(where, self.grasps[0], symmetry_of(self.item))
+        return sighting(self.believed.plane, thing, self.item_height_m)
 
     @property
     def item_height_m(self) -> float:
@@ -68,40 +67,40 @@ class Attempt:
 
     @property
     def grasps(self) -> list[Grasp]:
-        """All grasps of the thing."""
+        """All grasps of the thing. Raises GripperTooNarrow."""
         return grasps_of(self.item, self.fingers, self.player.cell.opening_limits_m[1])
 
-    def seen(self, episode: Episode, target: Target) -> Episode:
+    def seen(self, episode: Episode, where: Sighting) -> Episode:
         """The episode with how well the thing was seen."""
         there = episode.station_from_object
-        off = target.where.position_m - there.translation[:2]
-        half = target.symmetry_rad / 2
-        turn = target.where.yaw_rad - axis_angle(there.rotation, 0)
+        off = where.position_m - there.translation[:2]
+        half = symmetry_of(self.item) / 2
+        turn = where.yaw_rad - axis_angle(there.rotation, 0)
         yaw = float((turn + half) % (2 * half) - half) if half else np.nan
         return replace(episode, seen_error_m=float(np.linalg.norm(off)), seen_yaw_error_rad=yaw)
 
-    def free(self, target: Target) -> tuple[Target, int]:
+    def free(self, where: Sighting) -> tuple[Target, int]:
         """A grasp that keeps clear of all else, and how many things had to be put aside for it.
 
-        Raises InTheWay where that does not help, and Unreachable.
+        Raises InTheWay where that does not help, GripperTooNarrow and Unreachable.
         """
         for cleared in range(MOST_CLEARED + 1):
             try:
-                where, turn = target.where, target.symmetry_rad
-                found = free_target(self.item.name, where, self.grasps, turn, self.fingers, self.obstacles)
+                name, turn = self.item.name, symmetry_of(self.item)
+                found = free_target(name, where, self.grasps, turn, self.fingers, self.obstacles)
                 return found, cleared
             except InTheWay as blocked:
                 if cleared == MOST_CLEARED:
                     raise
-                self._put_aside(blocked, target)
-            target = self.found(again=True)
+                self._put_aside(blocked, where)
+            where = self.found(again=True)
         raise AssertionError("the last round returns or raises")
 
-    def _put_aside(self, blocked: InTheWay, target: Target) -> None:
+    def _put_aside(self, blocked: InTheWay, where: Sighting) -> None:
         """Take what blocks across its narrow side, and put it where there is room."""
         one = self.obstacles[blocked.which]
         rest = [other for k, other in enumerate(self.obstacles) if k != blocked.which]
-        thing = Obstacle(target.where, footprint_of(self.item))
+        thing = Obstacle(where, footprint_of(self.item))
         width = one.size_m[1]
         opening = width + 2 * ROUGHLY
         if opening > self.player.cell.opening_limits_m[1]:

@@ -95,12 +95,12 @@ def _tried(attempt: Attempt, episode: Episode, plan: Plan, witness: Witness | No
     player, begun = attempt.player, attempt.player.cell.time_s
     for number in range(1, plan.tries + 1):
         try:
-            target = attempt.found(again=number > 1)
+            where = attempt.found(again=number > 1)
             if number == 1:
-                episode = attempt.seen(episode, target)
+                episode = attempt.seen(episode, where)
                 if witness is not None:
-                    witness.begins(player.cell, attempt.eye, player, attempt.believed, target.where, episode)
-            target, cleared = attempt.free(target)
+                    witness.begins(player.cell, attempt.eye, player, attempt.believed, where, episode)
+            target, cleared = attempt.free(where)
             episode = replace(episode, cleared=episode.cleared + cleared, tries=number)
         except EXPECTED as error:
             episode = replace(episode, failure=str(error), cause=cause_of(error))
