@@ -6,7 +6,16 @@ import numpy as np
 
 from vision_robot.errors import InTheWay
 from vision_robot.pick.episode import Episode, axis_angle
-from vision_robot.pick.grasps import FLOOR_M, Grasp, Target, footprint_of, grasps_of, symmetry_of
+from vision_robot.pick.grasps import (
+    CLEARANCES_M,
+    FLOOR_M,
+    OFF_MIDDLE,
+    Grasp,
+    Target,
+    footprint_of,
+    grasps_of,
+    symmetry_of,
+)
 from vision_robot.pick.knowledge import Knowledge
 from vision_robot.pick.look import LIES, Eye, survey
 from vision_robot.pick.obstacles import HEIGHT_M, Obstacle, free_target, obstacles_of
@@ -23,11 +32,8 @@ __all__ = ["Attempt"]
 MOST_CLEARED = 3
 """Things that are put aside before the thing itself is given up."""
 
-ASIDE_M = 0.015
-"""Kept around what is put aside."""
-
-ROUGHLY = 0.010
-"""Clearance of each finger from a thing whose shape is not known [m]."""
+ASIDE_M, FAR_M = 0.015, 0.040
+"""Kept around what is put aside; and from the thing, which fingers need to come down beside."""
 
 
 @dataclass
@@ -97,33 +103,59 @@ class Attempt:
         raise AssertionError("the last round returns or raises")
 
     def _put_aside(self, blocked: InTheWay, where: Sighting) -> None:
-        """Take what blocks across its narrow side, and put it where there is room."""
-        one = self.obstacles[blocked.which]
-        rest = [other for k, other in enumerate(self.obstacles) if k != blocked.which]
+        """Put aside one thing whose going frees a grasp, else what blocks the best one.
+
+        Raises InTheWay where it cannot be taken itself, or has no room elsewhere.
+        """
         thing = Obstacle(where, footprint_of(self.item))
-        width = one.size_m[1]
-        opening = width + 2 * ROUGHLY
-        if opening > self.player.cell.opening_limits_m[1]:
-            raise blocked
+        for index in [*self._whose_going_helps(where), blocked.which]:
+            one = self.obstacles[index]
+            rest = [thing, *(other for k, other in enumerate(self.obstacles) if k != index)]
+            aside = self._room(one, rest)
+            try:
+                own = free_target("", one.where, self._rough_grasps(one), np.pi, self.fingers, rest)
+            except InTheWay:
+                continue
+            if aside is not None:
+                return self._moved(own, aside)
+        raise blocked
+
+    def _whose_going_helps(self, where: Sighting) -> list[int]:
+        """Obstacles without any one of which there would be a free grasp."""
+        found = []
+        for index in range(len(self.obstacles)):
+            rest = [other for k, other in enumerate(self.obstacles) if k != index]
+            try:
+                free_target("", where, self.grasps, symmetry_of(self.item), self.fingers, rest)
+            except InTheWay:
+                continue
+            found.append(index)
+        return found
+
+    def _rough_grasps(self, one: Obstacle) -> list[Grasp]:
+        """Grasps across the narrow side of a thing whose shape is not known."""
+        length, width = one.size_m
         height = max(HEIGHT_M / 2, self.fingers.tip_m + FLOOR_M)
-        grasp = Grasp((0.0, 0.0), 0.0, width, opening, height)
-        try:
-            own = free_target("", one.where, [grasp], np.pi, self.fingers, [thing, *rest])
-        except InTheWay:
-            raise blocked from None
-        aside = self._room(one, [thing, *rest])
-        if aside is None:
-            raise blocked
+        most = self.player.cell.opening_limits_m[1]
+        found = [
+            Grasp((share * length, 0.0), 0.0, width, width + 2 * clearance, height)
+            for clearance in CLEARANCES_M
+            for share in OFF_MIDDLE
+        ]
+        fits = [one for one in found if one.opening_m <= most]
+        return fits or [replace(found[-1], opening_m=np.inf)]  # which no room is enough for
+
+    def _moved(self, own: Target, aside: Sighting) -> None:
         hand = Hand(self.player, self.believed)
         self.player.phase = "clear"
-        self.player.grip(opening, seconds=0.2)
+        self.player.grip(own.grasp.opening_m, seconds=0.2)
         hand.down_on(own.aim)
         hand.close()
         hand.up_from(own.aim)
-        hand.put_down(own.aim_at(aside), opening)
+        hand.put_down(hand.aim_for(own, aside), own.grasp.opening_m)
 
     def _room(self, one: Obstacle, others: list[Obstacle]) -> Sighting | None:
-        """The nearest place where it lies clear of everything and of where the thing is to go."""
+        """The nearest place clear of `others`, first of which is the thing, and of where that is to go."""
         x, y, yaw = self.player.world.place
         goal = outline(self.item, x, y, yaw)
         left, bottom, right, top = self.player.world.design.scatter_m
@@ -132,7 +164,8 @@ class Attempt:
         order = np.argsort(np.linalg.norm(flat - one.where.position_m, axis=1))
         for place in flat[order]:
             moved = replace(one, where=replace(one.where, position_m=place))
-            taken = [goal, *(other.corners for other in others)]
-            if all(apart(moved.corners, corners) >= ASIDE_M for corners in taken):
+            rooms = [apart(moved.corners, other.corners) for other in others]
+            clear = min(*rooms[1:], apart(moved.corners, goal), np.inf) >= ASIDE_M
+            if clear and rooms[0] >= FAR_M:
                 return moved.where
         return None

@@ -53,6 +53,7 @@ ARRIVALS = {
     "rgb-plain": Arrival(empty=0, sliding=0),
     "background": Arrival(sliding=0),
     "background-plain": Arrival(sliding=0),
+    "optical-flow-plain": Arrival(empty=0, sliding=12, still=0, distance_m=0.03),
 }
 """What of it a kind of tracker needs to see; others see all of it."""
 
@@ -78,9 +79,7 @@ class Eye:
         data = self._renderer.cell.data
         state = data.qpos.tobytes() + data.mocap_pos.tobytes() + data.mocap_quat.tobytes()
         if state != self._state or not self._renderer.cell.light_is_as_designed:
-            self.frames = 0
-        """Pictures taken so far."""
-        self._state, self._clean = state, self._renderer.picture()
+            self._state, self._clean = state, self._renderer.picture()
         return self._clean
 
     def through(self, view: StationCamera) -> Image:

@@ -69,6 +69,17 @@ class Hand:
         goal = station_from_grasp(aim.position_m, aim.yaw_rad, aim.height_m + height_m)
         return joints_for(self.player.solver, self.knowledge.base_from_station, goal, self.player.joints)
 
+    def aim_for(self, target: Target, where: Sighting) -> Sighting:
+        """Where the tool has to be for the target, held as it is now, to lie at another place.
+
+        The arm may bring it there turned by half a turn: what is held off its middle then lies on the other
+        side of the tool.
+        """
+        turned = self.is_turned(target.aim, self.player.joints)
+        aims = [target.aim_at(replace(where, yaw_rad=where.yaw_rad + half)) for half in (0.0, np.pi)]
+        same = [self.is_turned(aim, self.joints(aim, APPROACH_M)) == turned for aim in aims]
+        return aims[same.index(True)] if any(same) else aims[0]
+
     def is_turned(self, aim: Sighting, joints: Float[Array, "n"]) -> bool:
         """Of the two ways round in which fingers take an axis, whether it is the other one."""
         base_from_tool = self.knowledge.arm.chain.base_from_tool(joints)
@@ -132,20 +143,6 @@ def _pick(
     )
 
 
-def _goal_aim(hand: Hand, target: Target, goal: SE3) -> Sighting:
-    """Where the tool has to be for the thing to lie at its goal.
-
-    The arm may bring it there turned by half a turn: a thing held off its middle then lies on the other side.
-    """
-    yaw, turned = axis_angle(goal.rotation, 0), hand.is_turned(target.aim, hand.player.joints)
-    aims = [
-        target.aim_at(Sighting(goal.translation[:2], np.zeros((2, 2)), one, float(goal.translation[2])))
-        for one in (yaw, yaw + np.pi)
-    ]
-    same = [hand.is_turned(aim, hand.joints(aim, APPROACH_M)) == turned for aim in aims]
-    return aims[same.index(True)] if any(same) else aims[0]
-
-
 def holds(player: Player, thing: str) -> bool:
     """Whether parts of the gripper really press on the thing from both sides."""
     return len(held_by(player.cell, thing)) >= 2
@@ -163,7 +160,9 @@ def stays_up(player: Player, thing: str, tolerances: Tolerances) -> bool:
 def placed(hand: Hand, target: Target, episode: Episode, tolerances: Tolerances) -> Episode:
     """Put down what is held where the episode wants it, and see how well that went."""
     goal = episode.station_from_place
-    hand.put_down(_goal_aim(hand, target, goal), target.grasp.opening_m)
+    yaw = axis_angle(goal.rotation, 0)
+    where = Sighting(goal.translation[:2], np.zeros((2, 2)), yaw, float(goal.translation[2]))
+    hand.put_down(hand.aim_for(target, where), target.grasp.opening_m)
     hand.player.hold(0.5)
     thing = hand.player.cell.station_from(episode.thing)
     placing = miss_of(goal, thing.translation, axis_angle(thing.rotation, 0), target.symmetry_rad)
