@@ -1,0 +1,39 @@
+"""Stills of an episode as pictures of a page."""
+
+from base64 import b64encode
+from collections.abc import Sequence
+
+from vision_robot.pick.film import Still
+from vision_robot.report.page import Gallery, Picture
+from vision_robot.types import Image
+
+__all__ = ["film_strip", "photograph"]
+
+WIDTH_PX = 400
+
+
+def film_strip(stills: Sequence[Still], name: str) -> Gallery:
+    """One picture of each phase that has a name, in the order of time."""
+    return Gallery(
+        tuple(
+            Picture(
+                data_uri=photograph(still.image),
+                alt=f"{name}, {still.phase}",
+                caption=f"{name}: {still.phase}, {still.time_s:.1f} s",
+            )
+            for still in stills
+            if still.phase
+        ),
+        wide=True,
+    )
+
+
+def photograph(image: Image, width_px: int = WIDTH_PX) -> str:
+    """A picture as a data URI, made smaller where it is wider."""
+    import cv2
+
+    scale = min(1.0, width_px / image.shape[1])
+    size = (max(1, round(image.shape[1] * scale)), max(1, round(image.shape[0] * scale)))
+    small = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+    _, data = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, 80])
+    return "data:image/jpeg;base64," + b64encode(data.tobytes()).decode()
