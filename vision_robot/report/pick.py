@@ -10,17 +10,20 @@ from vision_robot.evaluate.picking import closing_offsets_m, iso_9283, ladder, p
 from vision_robot.pick.episode import Episode
 from vision_robot.pick.episodes import OPEN, Plan
 from vision_robot.pick.film import Still
-from vision_robot.pick.summary import summary_of
+from vision_robot.pick.summary import Spread, summary_of
 from vision_robot.pick.world import World
 from vision_robot.report.page import Facts, Figures, Footer, Page, Paragraph, Part, Remarks, Section
 from vision_robot.report.pick_budget import budget_parts
 from vision_robot.report.pick_figures import convergence, distribution, growth, ladder_chart, plan_view
 from vision_robot.report.pick_stills import film_strip
-from vision_robot.report.pick_tables import asked, breakdown, failed, iso_table
+from vision_robot.report.pick_tables import asked, breakdown, conditions, failed, iso_table
 from vision_robot.report.quantity import compact
 from vision_robot.report.versions import versions
 
-__all__ = ["PickStory", "error_parts", "failure_parts", "pick_page"]
+__all__ = ["PickStory", "error_parts", "failure_parts", "pick_page", "picks_piece"]
+
+TELLING = ("seen", "close", "put down")
+"""Phases at whose ends a failure can be seen, besides the last picture."""
 
 LOW_SHARE = 0.9
 """Grasp success under which a page warns."""
@@ -89,37 +92,25 @@ def _facts(story: PickStory) -> Facts:
 
     def share(rung: str) -> str:
         interval = rungs[rung]
-        return f"{100 * interval.low:.1f} to {100 * interval.high:.1f} % in 95 of 100"
+        return f"95 % interval {100 * interval.low:.1f} to {100 * interval.high:.1f} %"
 
-    def within(p95: float, scale: float, unit: str) -> str:
-        return f"95 % within {compact(scale * p95)} {unit}"
+    def spread(name: str, of: Spread, scale: float, unit: str) -> tuple[str, str, str]:
+        if not np.isfinite(of.median):
+            return name, "–", "never came so far"
+        about = f"median; 95 % within {compact(scale * of.p95)}{unit}"
+        return name, f"{compact(scale * of.median)}{unit}", about
 
+    degrees = 180 / np.pi
     return Facts(
         (
             ("grasped and held", f"{100 * rungs['lifted'].value:.1f} %", share("lifted")),
             ("placed", f"{100 * rungs['placed'].value:.1f} %", share("placed")),
-            (
-                "position at closing",
-                f"{compact(1000 * found.position_m.median)} mm",
-                f"median; {within(found.position_m.p95, 1000, 'mm')}",
-            ),
-            (
-                "yaw at closing",
-                f"{compact(np.degrees(found.yaw_rad.median))}°",
-                f"median; {within(np.degrees(found.yaw_rad.p95), 1, '°')}",
-            ),
-            (
-                "position after placing",
-                f"{compact(1000 * found.placing_m.median)} mm",
-                f"median; {within(found.placing_m.p95, 1000, 'mm')}",
-            ),
-            (
-                "yaw after placing",
-                f"{compact(np.degrees(found.placing_yaw_rad.median))}°",
-                f"median; {within(np.degrees(found.placing_yaw_rad.p95), 1, '°')}",
-            ),
-            ("time", f"{compact(found.seconds.median)} s", f"median; {within(found.seconds.p95, 1, 's')}"),
-            ("looks", compact(found.looks.median, 2), "median, pictures looked at"),
+            spread("position at closing", found.position_m, 1000, " mm"),
+            spread("yaw at closing", found.yaw_rad, degrees, "°"),
+            spread("position after placing", found.placing_m, 1000, " mm"),
+            spread("yaw after placing", found.placing_yaw_rad, degrees, "°"),
+            spread("time", found.seconds, 1, " s"),
+            spread("looks", found.looks, 1, ""),
         )
     )
 
@@ -166,10 +157,12 @@ def _remarks(story: PickStory) -> tuple[tuple[str, str], ...]:
 
 def failure_parts(story: PickStory) -> tuple[Part, ...]:
     """Each failure with its reason and pictures of it."""
-    parts: list[Part] = [failed(story.episodes)]
+    parts: list[Part] = [failed(story.plan, story.episodes)]
     shown = [one for one in story.episodes if not one.placed and one.seed in story.stills]
     for one in shown:
-        parts.append(film_strip(story.stills[one.seed], f"seed {one.seed}"))
+        stills = story.stills[one.seed]
+        told = [still for still in stills[:-1] if still.phase in TELLING] + [stills[-1]]
+        parts.append(film_strip(told, f"seed {one.seed}"))
     left_out = sum(not one.placed for one in story.episodes) - len(shown)
     if left_out:
         film = "'vr pick --episodes 1 --seed N --video film.mp4' films any of them"
@@ -199,3 +192,15 @@ def error_parts(story: PickStory) -> tuple[Part, ...]:
         plan_view(offsets),
     )
     return (Figures(figures), iso_table(iso_9283(closing), iso_9283(placing)))
+
+
+def picks_piece(stories: Mapping[str, PickStory]) -> tuple[Part, ...]:
+    """What a longer story tells of picking: each condition with its figures, and films on a strip."""
+    parts: list[Part] = [conditions({name: story.episodes for name, story in stories.items()})]
+    for name, story in stories.items():
+        for seed, stills in story.stills.items():
+            parts.append(film_strip(stills, f"{name}, seed {seed}"))
+    offsets = {name: closing_offsets_m(story.episodes) for name, story in stories.items()}
+    if any(len(rows) for rows in offsets.values()):
+        parts.append(Figures((plan_view(offsets),)))
+    return tuple(parts)

@@ -65,8 +65,9 @@ def distribution(values: Mapping[str, Float[Array, "n"]], unit: str, caption: st
         if len(known) > 1:
             axes.legend(loc="lower right")
 
+    tied = unit if unit == "°" else f" {unit}"
     medians = ", ".join(
-        f"{name} {compact(float(np.median(v)))} {unit} (95 % within {compact(float(np.percentile(v, 95)))})"
+        f"{name} {compact(float(np.median(v)))}{tied} (95 % within {compact(float(np.percentile(v, 95)))})"
         for name, v in known.items()
     )
     return Figure(
@@ -183,6 +184,8 @@ def convergence(episodes: Sequence[Episode]) -> Figure | None:
             middle = [float(np.nanmedian(rows[:, k])) for k in np.flatnonzero(known)]
             axes.plot(number[known], np.maximum(middle, 1e-3), "o-", color=colour, markersize=2.5, label=name)
         axes.set_yscale("log")
+        axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        axes.set_xticks(number)
         axes.set_xlabel("look")
         axes.set_ylabel("error [mm]")
         axes.legend(loc="upper right")

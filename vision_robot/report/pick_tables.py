@@ -1,6 +1,6 @@
 """Tables of episodes: what was asked, what failed, ISO 9283, and the breakdown."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -8,12 +8,13 @@ from vision_robot.evaluate.picking import Group, by_distance, by_thing, by_yaw
 from vision_robot.evaluate.pose_accuracy import PoseAccuracy
 from vision_robot.evaluate.statistics import Interval
 from vision_robot.pick.episode import RUNGS, Episode
-from vision_robot.pick.episodes import Plan
+from vision_robot.pick.episodes import OPEN, Plan
+from vision_robot.pick.summary import summary_of
 from vision_robot.pick.world import World
 from vision_robot.report.page import Table
 from vision_robot.report.quantity import compact
 
-__all__ = ["asked", "breakdown", "failed", "iso_table"]
+__all__ = ["asked", "breakdown", "conditions", "failed", "iso_table"]
 
 NEXT = {
     "": "the tracker said nothing",
@@ -54,7 +55,7 @@ def asked(plan: Plan, world: World, faults: Sequence[str], episodes: Sequence[Ep
     return Table(("", ""), rows, "How the episodes were run, and what counts as what.")
 
 
-def failed(episodes: Sequence[Episode]) -> Table:
+def failed(plan: Plan, episodes: Sequence[Episode]) -> Table:
     """One row for each episode that did not place its thing."""
     rows = []
     for one in episodes:
@@ -65,7 +66,7 @@ def failed(episodes: Sequence[Episode]) -> Table:
             (
                 str(one.seed),
                 one.rung or "not seen",
-                one.failure or NEXT[one.rung],
+                one.failure or _why(plan, one),
                 compact(1000 * one.seen_error_m) if one.seen else "–",
                 compact(1000 * closing.position_m) if closing else "–",
                 compact(1000 * placing.position_m) if placing else "–",
@@ -77,6 +78,11 @@ def failed(episodes: Sequence[Episode]) -> Table:
         f"Episodes that did not get to the last of {len(RUNGS)} rungs, all of them.",
         numeric=frozenset({0, 3, 4, 5}),
     )
+
+
+def _why(plan: Plan, episode: Episode) -> str:
+    blind = plan.loop != OPEN and episode.seen and not episode.course
+    return f"{'the label on the hand was hidden; ' if blind else ''}{NEXT[episode.rung]}"
 
 
 def iso_table(closing: PoseAccuracy | None, placing: PoseAccuracy | None) -> Table:
@@ -137,3 +143,28 @@ def _rows(by: str, groups: Sequence[Group]) -> list[tuple[str, ...]]:
 
 def _percent(interval: Interval) -> str:
     return f"{100 * interval.low:.0f} to {100 * interval.high:.0f}"
+
+
+def conditions(episodes: Mapping[str, Sequence[Episode]]) -> Table:
+    """Several conditions side by side."""
+    rows = []
+    for name, some in episodes.items():
+        found = summary_of(some)
+        rows.append(
+            (
+                name,
+                str(found.episodes),
+                str(found.reached_rung["lifted"]),
+                str(found.reached_rung["placed"]),
+                compact(1000 * found.position_m.median),
+                compact(np.degrees(found.yaw_rad.median)),
+                compact(1000 * found.placing_m.median),
+                compact(found.seconds.median),
+            )
+        )
+    return Table(
+        ("", "episodes", "held", "placed", "closed off [mm]", "turned [°]", "placed off [mm]", "time [s]"),
+        tuple(rows),
+        "Episodes of the same seeds under each condition; medians.",
+        numeric=frozenset(range(1, 8)),
+    )
