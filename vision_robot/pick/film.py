@@ -150,7 +150,7 @@ def film_size(camera: Camera) -> tuple[int, int]:
 
 def _picture(scene: _Scene, phase: str) -> Image:
     cell, believed, where = scene.cell, scene.believed, scene.where
-    image, plane = scene.eye.plain(), believed.plane
+    image, plane = scene.eye.plain().copy(), believed.plane
 
     def at(places_m: Float[Array, "n 2"], z_m: float) -> Float[Array, "n 2"]:
         return plane.pixels(places_m, z_m=z_m)
