@@ -95,7 +95,7 @@ def pick_moving(
     except EXPECTED as error:
         episode = replace(episode, failure=str(error), cause=cause_of(error))
         if not episode.seen and witness is not None:
-            witness.unseen(player.cell, attempt.eye, episode)
+            witness.unseen(player.cell, attempt.eye)
     episode = replace(episode, seconds=player.cell.time_s - begun)
     if witness is not None:
         witness.ends(episode)

@@ -105,7 +105,7 @@ def _tried(attempt: Attempt, episode: Episode, plan: Plan, witness: Witness | No
         except EXPECTED as error:
             episode = replace(episode, failure=str(error), cause=cause_of(error))
             if number == 1 and not episode.seen and witness is not None:
-                witness.unseen(player.cell, attempt.eye, episode)
+                witness.unseen(player.cell, attempt.eye)
             break
         loop = None if plan.loop == OPEN else _closed(plan, attempt)
         episode = pick_and_place(player, attempt.believed, target, episode, plan.tolerances, loop or straight)

@@ -120,6 +120,7 @@ def _pick(
 ) -> Episode:
     player = hand.player
     cell = player.cell
+    player.phase = "open"
     player.grip(target.grasp.opening_m, seconds=0.2)
     aim, looks = approach(player, target.aim, hand.joints(target.aim, APPROACH_M))
     player.phase = "above"

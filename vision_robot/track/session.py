@@ -20,7 +20,7 @@ from vision_robot.tracks import Tracks
 from vision_robot.types import Array, Float
 from vision_robot.video import Frame, Video
 
-__all__ = ["Latency", "Session", "Step", "track"]
+__all__ = ["Latency", "Session", "Step", "stacked", "track"]
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Session:
     def rest(self) -> Tracks:
         """The rows that were waiting for their tracks to be confirmed; to be called once, at the end."""
         parts = self._follower.finish() if self._follower else []
-        return _stacked([self._measured(part) for part in parts])
+        return stacked([self._measured(part) for part in parts])
 
     def remarks(self) -> tuple[Remark, ...]:
         """What the tracker says of itself, and what was seen of camera and clock."""
@@ -158,10 +158,11 @@ def track(
     """All tracks of a video as one table: `vr track video` without its files."""
     session = Session(tracker, follow=follow, plane=plane, z_m=z_m)
     parts = [step.final for step in session.run(source)]
-    return _stacked([*parts, session.rest()])
+    return stacked([*parts, session.rest()])
 
 
-def _stacked(parts: list[Tracks]) -> Tracks:
+def stacked(parts: list[Tracks]) -> Tracks:
+    """Rows of several parts as one table, in their order."""
     parts = [part for part in parts if len(part)]
     if not parts:
         return Tracks.empty()
