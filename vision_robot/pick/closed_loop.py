@@ -53,6 +53,7 @@ class ClosedLoop:
         The hand is held that way round which shows its label best, and turned by half a turn if it is hidden
         all the same. Raises LostSight where it is hidden either way.
         """
+        del above  # a loop finds its own way there
         player.phase = self.law
         lost: LostSight | Unreachable | None = None
         for hand in self._ways(player, first):

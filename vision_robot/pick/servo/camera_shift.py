@@ -98,6 +98,6 @@ def _seen(
     """Weighed residuals of the label's pixels, and their derivative in a turn and shift of the camera."""
     projected, in_point, _ = camera.project_jacobian(in_cam)
     J = np.concatenate([-in_point @ skew(in_cam), in_point], axis=2)
-    known = np.isfinite(projected).all(axis=1)  # a step may lead outside the lens' field
-    residual = np.where(known[:, None], weight * (projected - pixels), 0.0)
-    return residual.reshape(-1), np.where(known[:, None, None], weight[:, :, None] * J, 0.0).reshape(-1, 6)
+    # A step may lead outside the lens' field, where projections are NaN.
+    residual = np.nan_to_num(weight * (projected - pixels))
+    return residual.reshape(-1), np.nan_to_num(weight[:, :, None] * J).reshape(-1, 6)

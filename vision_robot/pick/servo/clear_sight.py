@@ -1,5 +1,7 @@
 """Which way round a hand has its label in sight: by the lines of sight past the arm's own skeleton."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from vision_robot.geometry import SE3, SerialChain, WorkPlane
@@ -14,7 +16,7 @@ def skeleton(chain: SerialChain, joints: Float[Array, "n"]) -> Float[Array, "k 3
     """Points in {B} along straight lines from joint to joint and on to the wrist."""
     frames = [*chain.base_from_joints(joints), chain.base_from_wrist(joints)]
     places = np.stack([np.zeros(3), *(frame.translation for frame in frames)])
-    return np.concatenate([a + PIECES * (b - a) for a, b in zip(places[:-1], places[1:], strict=True)])
+    return np.concatenate([a + PIECES * (b - a) for a, b in pairwise(places)])
 
 
 def clearance_m(

@@ -45,7 +45,7 @@ def image_based(stage: Stage, first: Sighting, how: Servoing) -> Sighting:
 
 
 def _at_all_heights(stage: Stage, first: Sighting, how: Servoing, law: Law, name: str) -> Sighting:
-    """Servo at one height after the other; in the end the looks of all heights tell the place at the thing."""
+    """Servo at one height after the other; the looks of all together tell the place at the thing."""
     glimpses: list[Glimpse] = []
     place = first
     for height in how.heights_m:

@@ -20,7 +20,7 @@ class Servoing:
     """Over the thing's axis: where the label is looked at, one after the other."""
     turn_sigma_rad: float = np.radians(2.0)
     shift_sigma_m: float = 0.02
-    """How far the camera may have been knocked per axis: one standard deviation of what is believed before."""
+    """How far the camera may have been knocked, one standard deviation per axis, before it is looked at."""
     stop_m: float = 3.5e-4
     """Look-move-look ends when the place at the thing is known this well, one standard deviation."""
     enough_m: float = 2e-3
