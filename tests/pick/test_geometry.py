@@ -1,5 +1,7 @@
 """From pixel to joints: the laws that each step of the chain obeys."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -16,6 +18,8 @@ from vision_robot.pick.knowledge import STAGES, Knowledge
 from vision_robot.pick.servoing import image_step, interaction_matrix
 from vision_robot.pick.sighting import Seen, sighting
 from vision_robot.pick.world import ordinary_world
+from vision_robot.sim.outline import area_moments, outline_of
+from vision_robot.sim.shapes import shape_named
 
 RNG = np.random.default_rng(0)
 ANGLE = st.floats(-np.pi, np.pi)
@@ -124,3 +128,31 @@ def test_stages_are_replaced_by_the_truth():
     with pytest.raises(BadParameter, match="luck"):
         believed.corrected(truth, {"luck"})
     assert set(STAGES) >= {"calibration", "ik"}
+
+
+@given(ANGLE, st.floats(-0.1, 0.1), st.floats(-0.1, 0.1), st.sampled_from(["rod", "box", "disc"]))
+def test_a_body_is_found_by_its_outline_where_it_lies(yaw, x, y, shape):
+    """Near ends look larger, sides are seen besides tops: the hull tells by how much."""
+    size = {"rod": (0.12, 0.01), "box": (0.05, 0.03, 0.02), "disc": (0.04, 0.01)}[shape]
+    body = shape_named(shape, size, (0.8, 0.1, 0.1))
+    pose = SE3.from_rotvec(np.array([0, 0, yaw]), np.array([x, y, body.rest_m]))
+    polygon = outline_of((LOOKING_DOWN @ pose).apply(body.hull), CAMERA)
+    assert polygon is not None
+    moments = area_moments(polygon)
+    (major, minor), direction = moments.axes()
+    seen = Seen(moments.centroid, direction, float(major), float(minor), body.hull)
+    found = sighting(PLANE, seen, body.rest_m)
+    assert np.allclose(found.position_m, [x, y], atol=2e-5)
+    if shape != "disc":
+        assert abs((found.yaw_rad - yaw + np.pi / 2) % np.pi - np.pi / 2) < 1e-3
+
+
+def test_a_rod_that_points_at_the_camera_is_not_where_its_centroid_is():
+    body = shape_named("rod", (0.12, 0.01), (0.8, 0.1, 0.1))
+    pose = SE3.from_rotvec(np.zeros(3), np.array([0.08, 0.0, body.rest_m]))
+    polygon = outline_of((LOOKING_DOWN @ pose).apply(body.hull), CAMERA)
+    assert polygon is not None
+    moments = area_moments(polygon)
+    seen = Seen(moments.centroid, moments.axes()[1], 100.0, 8.0, body.hull)
+    assert abs(sighting(PLANE, seen, 0.005).position_m[0] - 0.08) < 2e-5
+    assert abs(sighting(PLANE, replace(seen, hull=None), 0.005).position_m[0] - 0.08) > 5e-4

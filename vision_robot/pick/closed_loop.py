@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from vision_robot.errors import NothingSeen
+from vision_robot.pick.episode import Look
 from vision_robot.pick.goal import joints_for, station_from_grasp
 from vision_robot.pick.hand_label import HandLabel, largest
 from vision_robot.pick.knowledge import Knowledge
@@ -18,7 +19,7 @@ from vision_robot.sim.cell_model import LABEL
 from vision_robot.track.tracker import Tracker
 from vision_robot.types import Array, Float
 
-__all__ = ["LAWS", "ClosedLoop", "Look"]
+__all__ = ["LAWS", "ClosedLoop"]
 
 LOOK_M = (0.15, 0.02)
 """Heights over the thing at which look-move-look looks."""
@@ -37,14 +38,6 @@ GAIN_PER_S = 2.5
 MOST_SECONDS, STILL_M, STILL_FRAMES = 4.0, 2e-4, 5
 
 
-@dataclass(frozen=True)
-class Look:
-    """An error that was seen on the way [m], and when [s]."""
-
-    time_s: float
-    error_m: float
-
-
 @dataclass
 class ClosedLoop:
     """An approach that looks at the label until it is where it has to be; call it as `Approach`."""
@@ -55,6 +48,8 @@ class ClosedLoop:
     knowledge: Knowledge
     label: HandLabel
     true_tracking: bool = False
+    thing: str = ""
+    """Name of what is picked: each look is kept with the true error beside it, which nothing here uses."""
     looks: list[Look] = field(default_factory=list)
 
     def __call__(self, player: Player, first: Sighting, above: Float[Array, "n"]) -> tuple[Sighting, int]:
@@ -62,6 +57,7 @@ class ClosedLoop:
 
         Where the label cannot be seen whole either way round, nothing is known better than at first.
         """
+        player.phase = self.law
         # What of the arm is higher than the label leans away from the camera's foot in the picture: on the
         # side towards it the label is in sight.
         foot = self.knowledge.plane.cam_from_station.inverse().translation[:2]
@@ -101,8 +97,18 @@ class ClosedLoop:
 
     def note(self, player: Player, error: Float[Array, "2"]) -> float:
         """Keep an error for the picture of how it converged, and return its size [m]."""
-        size = float(np.linalg.norm(error))
-        self.looks.append(Look(player.cell.time_s, size))
+        size, cell = float(np.linalg.norm(error)), player.cell
+        tool = self.knowledge.arm.chain.base_from_tool(player.joints)
+        height = float((self.knowledge.base_from_station.inverse() @ tool).translation[2])
+        off = np.nan
+        if self.thing:
+            off = float(
+                np.linalg.norm(
+                    (cell.station_from(self.thing).translation - cell.station_from_tool.translation)[:2]
+                )
+            )
+        player.remark = f"look {len(self.looks) + 1} asked for {1000 * size:.1f} mm"
+        self.looks.append(Look(cell.time_s, size, height, off))
         return size
 
 

@@ -34,13 +34,17 @@ class HandLabel:
 
     def expected_area_px(self, knowledge: Knowledge, joints: Float[Array, "n"]) -> float:
         """Area of its image where the controller believes it to be, seen whole."""
-        (width, height), label = self.size_m, self.station_from_label(knowledge, joints)
+        plane, corners = knowledge.plane, self.corners_in_station(knowledge, joints)
+        u, v = plane.camera.project(plane.cam_from_station.apply(corners)).T
+        return float(abs(u @ np.roll(v, -1) - v @ np.roll(u, -1)) / 2)
+
+    def corners_in_station(self, knowledge: Knowledge, joints: Float[Array, "n"]) -> Float[Array, "4 3"]:
+        """Its corners [m] where the controller believes them to be, by its joints alone."""
+        width, height = self.size_m
         corners = 0.5 * np.array(
             [[-width, -height, 0], [width, -height, 0], [width, height, 0], [-width, height, 0]]
         )
-        plane = knowledge.plane
-        u, v = plane.camera.project(plane.cam_from_station.apply(label.apply(corners))).T
-        return float(abs(u @ np.roll(v, -1) - v @ np.roll(u, -1)) / 2)
+        return self.station_from_label(knowledge, joints).apply(corners)
 
     def station_from_label(self, knowledge: Knowledge, joints: Float[Array, "n"]) -> SE3:
         """Where the controller believes the label is, by its joints alone."""

@@ -114,9 +114,10 @@ class Picture:
 
 @dataclass(frozen=True)
 class Gallery:
-    """Small pictures in rows."""
+    """Small pictures in rows; `wide` ones are twice as large, so that words in them can be read."""
 
     items: tuple[Picture, ...]
+    wide: bool = False
 
 
 Part = Paragraph | Remarks | Facts | Table | Figures | Gallery

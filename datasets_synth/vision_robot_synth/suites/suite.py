@@ -62,6 +62,7 @@ class Suite:
 
 SUITES = {
     "calibration": "vision_robot_synth.suites.calibration:SUITE",
+    "grasp": "vision_robot_synth.suites.grasp:SUITE",
 }
 """Name -> where the suite is."""
 
