@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
+from pathlib import Path
 
 from vision_robot.errors import BadParameter
 from vision_robot.evaluate.sweep import Cell
@@ -47,6 +48,8 @@ class Suite:
     threshold: float
     """Of `metric`, under which a method counts as broken on a dial."""
     cells: Callable[[Plan], Sequence[Cell]]
+    on_data: Callable[[Path], "Suite"] | None = None
+    """The suite on a folder of somebody's own data, whose sequences are then its scenes and, one each, seeds."""
 
     def chosen(self, plan: Plan) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Scenes and methods of a plan. Raises BadParameter for names the suite lacks, listing its own."""
@@ -62,13 +65,20 @@ class Suite:
 
 SUITES = {
     "calibration": "vision_robot_synth.suites.calibration:SUITE",
+    "flow": "vision_robot_synth.suites.flow:SUITE",
+    "ik": "vision_robot_synth.suites.ik:SUITE",
 }
 """Name -> where the suite is."""
 
 
-def suite_named(name: str) -> Suite:
-    """The suite of that name. Raises BadParameter, listing the known."""
+def suite_named(name: str, data: Path | None = None) -> Suite:
+    """The suite of that name, on `data` where that is given. Raises BadParameter, listing the known."""
     if name not in SUITES:
         raise BadParameter("suite", name, f"one of {', '.join(SUITES)}")
     module, attribute = SUITES[name].split(":")
-    return getattr(import_module(module), attribute)
+    suite: Suite = getattr(import_module(module), attribute)
+    if data is None:
+        return suite
+    if suite.on_data is None:
+        raise BadParameter("--data", str(data), f"left out for suite {name}, which makes its own data")
+    return suite.on_data(data)
