@@ -11,7 +11,7 @@ __all__ = ["benchmark"]
 
 
 def benchmark(
-    suite: Annotated[str, typer.Argument(help="calibration, trackers, flow, ik, grasp or all.")] = "all",
+    suite: Annotated[str, typer.Argument(help="calibration, flow, ik or all.")] = "all",
     scenes: Annotated[
         list[str] | None, typer.Option("--scene", help="Only this scene. May be repeated.")
     ] = None,
@@ -19,6 +19,10 @@ def benchmark(
         list[str] | None, typer.Option("--method", help="Only this method. May be repeated.")
     ] = None,
     seeds: Annotated[int, typer.Option(help="Seeds of every scene; fewer than 8 settle little.")] = 10,
+    data: Annotated[
+        Path | None,
+        typer.Option(help="Your own labelled data instead of rendered: a sequence, or a folder of them."),
+    ] = None,
     frames: Annotated[int | None, typer.Option(help="Frames of every video; else the suite's own.")] = None,
     size: Annotated[str | None, typer.Option(help="Size of the pictures, such as 640x480.")] = None,
     workers: Annotated[int, typer.Option(help="Processes on this machine.")] = 1,
@@ -59,7 +63,7 @@ def benchmark(
         frames,
         whole_pair(size, "--size") if size else None,
     )
-    runs = run_suites(suite, plan, out, workers=workers, scheduler=scheduler)
+    runs = run_suites(suite, plan, out, workers=workers, scheduler=scheduler, data=data)
     if report:
         benchmark_output.write_reports(runs, report, seed)
     if json:

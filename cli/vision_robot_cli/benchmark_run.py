@@ -23,11 +23,15 @@ class SuiteRun:
     outcomes: Sequence[Outcome]
 
 
-def run_suites(name: str, plan: Plan, folder: Path, *, workers: int, scheduler: str | None) -> list[SuiteRun]:
-    """One suite, or all of them in the registry's order, results kept in `folder`."""
+def run_suites(
+    name: str, plan: Plan, folder: Path, *, workers: int, scheduler: str | None, data: Path | None = None
+) -> list[SuiteRun]:
+    """One suite, on `data` where that is given, or all in the registry's order; results kept in `folder`."""
     if name == ALL and (plan.scenes or plan.methods):
         raise BadParameter("suite", name, f"one of {', '.join(SUITES)} where --scene or --method is given")
-    suites = [suite_named(one) for one in (SUITES if name == ALL else [name])]
+    if name == ALL and data is not None:
+        raise BadParameter("suite", name, f"one of {', '.join(SUITES)} where --data is given")
+    suites = [suite_named(one, data) for one in (SUITES if name == ALL else [name])]
     check_place(folder / "results")
     store, runs = Store(folder), []
     for suite in suites:
