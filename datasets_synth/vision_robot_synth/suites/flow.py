@@ -1,4 +1,4 @@
-"""Suite `flow`: dense optical flow on rendered belts and tables, or on somebody's own pairs with true flow."""
+"""Suite `flow`: dense optical flow on rendered belts and tables, or on one's own pairs with true flow."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace

@@ -49,7 +49,7 @@ class Suite:
     """Of `metric`, under which a method counts as broken on a dial."""
     cells: Callable[[Plan], Sequence[Cell]]
     on_data: Callable[[Path], "Suite"] | None = None
-    """The suite on a folder of somebody's own data, whose sequences are then its scenes and, one each, seeds."""
+    """The suite on a folder of one's own data; each sequence is a scene and, as its number, a seed."""
 
     def chosen(self, plan: Plan) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Scenes and methods of a plan. Raises BadParameter for names the suite lacks, listing its own."""
