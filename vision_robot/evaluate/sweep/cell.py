@@ -8,7 +8,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Any
 
 import vision_robot
@@ -80,11 +80,13 @@ class Outcome:
     """Some frames side by side, as a data URI."""
     machine: str = ""
     """Where it was measured."""
+    cpu_seconds: float | None = None
+    """Processor time of the process: less than `seconds` where it had to wait."""
 
 
 def measure(cell: Cell, workspace: Path) -> Outcome:
     """Do the work; an error becomes an outcome with its reason, since a method that fails is a result too."""
-    start = perf_counter()
+    start, cpu = perf_counter(), process_time()
     figures: Mapping[str, float] = {}
     failure, strip = None, None
     try:
@@ -95,7 +97,8 @@ def measure(cell: Cell, workspace: Path) -> Outcome:
         strip = found.strip
     except Exception as error:
         failure = f"{type(error).__name__}: {error}"
-    return Outcome(cell, figures, failure, perf_counter() - start, _peak_memory(), strip, this_machine())
+    taken = perf_counter() - start
+    return Outcome(cell, figures, failure, taken, _peak_memory(), strip, this_machine(), process_time() - cpu)
 
 
 def _peak_memory() -> int:
