@@ -18,7 +18,7 @@ def benchmark(
     methods: Annotated[
         list[str] | None, typer.Option("--method", help="Only this method. May be repeated.")
     ] = None,
-    seeds: Annotated[int, typer.Option(help="Seeds of every scene; fewer than 8 settle little.")] = 10,
+    seeds: Annotated[int, typer.Option(help="Seeds of every scene; fewer than 8 settle little.")] = 12,
     data: Annotated[
         Path | None,
         typer.Option(help="Your own labelled data instead of rendered: a sequence, or a folder of them."),
@@ -37,6 +37,9 @@ def benchmark(
         Path, typer.Option("-o", "--out", help="Folder of results, where a run that was cut short goes on.")
     ] = Path("benchmark"),
     report: Report = None,
+    tables: Annotated[
+        Path | None, typer.Option(help="Folder for scores as CSV and JSON, summaries as CSV and LaTeX.")
+    ] = None,
     seed: Seed = 0,
     json: Json = False,
 ) -> None:
@@ -55,6 +58,8 @@ def benchmark(
     before = read_scores(baseline) if baseline else []
     if report:
         check_place(report)
+    if tables:
+        check_place(tables / "scores.csv")
     plan = Plan(
         tuple(scenes or ()),
         tuple(methods or ()),
@@ -66,6 +71,8 @@ def benchmark(
     runs = run_suites(suite, plan, out, workers=workers, scheduler=scheduler, data=data)
     if report:
         benchmark_output.write_reports(runs, report, seed)
+    if tables:
+        benchmark_output.write_tables(runs, tables)
     if json:
         emit_json("benchmark", benchmark_output.as_json(runs))
     else:

@@ -140,7 +140,7 @@ def sentence(one: Comparison) -> str:
     if one.verdict == "equivalent":
         return (
             f"{where}{one.better} and {one.worse} are practically equal in {one.metric.name} "
-            f"(difference {range_words(found)}{unit}, which is within {one.zone:.2g}{unit}; {seeds}){left_out}"
+            f"(difference {range_words(found)}{unit}, within {one.zone:.2g}{unit}; {seeds}){left_out}"
         )
     if one.verdict == "better":
         return (
@@ -148,8 +148,9 @@ def sentence(one: Comparison) -> str:
             f"by {found.value:.3g}{unit} ({range_words(found)}, p = {one.p:.2g}, {seeds}){left_out}"
         )
     return (
-        f"{where}not settled between {one.better} and {one.worse} in {one.metric.name} (difference "
-        f"{range_words(found)}{unit}, p = {one.p:.2g}, {seeds}): {needed_words(one)} would be needed{left_out}"
+        f"{where}not settled between {one.better} and {one.worse} in {one.metric.name} "
+        f"(difference {range_words(found)}{unit}, p = {one.p:.2g}, {seeds}): "
+        f"{needed_words(one)} would be needed{left_out}"
     )
 
 

@@ -52,7 +52,8 @@ _STYLE = {
 def draw(paint: Callable[["Figure"], None], *, height_in: float, text_pt: float = 8.0) -> str:
     """SVG text of a drawing that `paint` puts on an empty figure of width `WIDTH_IN`.
 
-    Titles and ticks follow `text_pt`, the size of ordinary text. No pyplot, no window, no date: the bytes follow from the data alone.
+    Titles and ticks follow `text_pt`, the size of ordinary text. No pyplot, no window, no date:
+    the bytes follow from the data alone.
     """
     import io
 

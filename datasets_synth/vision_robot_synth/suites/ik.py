@@ -138,7 +138,7 @@ def _solver(name: str, method: str) -> Callable[[SE3], Answer]:
 
     def by_peer(goals: SE3) -> Answer:
         q = peer(goals)
-        return q, np.isfinite(q).all(axis=1)
+        return q, np.asarray(np.isfinite(q).all(axis=1))
 
     return by_peer
 
