@@ -9,7 +9,7 @@ from vision_robot_cli.options import Json, Report, Seed
 
 __all__ = ["benchmark"]
 
-SEEDS, QUICK_SEEDS = 10, 2
+SEEDS, QUICK_SEEDS = 12, 2
 
 
 def benchmark(
@@ -22,7 +22,7 @@ def benchmark(
     ] = None,
     seeds: Annotated[
         int | None,
-        typer.Option(help="Seeds of every scene, else 10, quick 2; fewer than 8 settle little."),
+        typer.Option(help="Seeds of every scene, else 12, quick 2; fewer than 8 settle little."),
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Fewer scenes and methods: minutes.")] = False,
     peers: Annotated[
@@ -52,6 +52,9 @@ def benchmark(
         Path, typer.Option("-o", "--out", help="Folder of results, where a run that was cut short goes on.")
     ] = Path("benchmark"),
     report: Report = None,
+    tables: Annotated[
+        Path | None, typer.Option(help="Folder for scores as CSV and JSON, summaries as CSV and LaTeX.")
+    ] = None,
     seed: Seed = 0,
     json: Json = False,
 ) -> None:
@@ -70,6 +73,8 @@ def benchmark(
     before = read_scores(baseline) if baseline else []
     if report:
         check_place(report)
+    if tables:
+        check_place(tables / "scores.csv")
     plan = Plan(
         tuple(scenes or ()),
         tuple(methods or ()),
@@ -85,6 +90,8 @@ def benchmark(
     )
     if report:
         benchmark_output.write_reports(runs, report, seed)
+    if tables:
+        benchmark_output.write_tables(runs, tables)
     if json:
         emit_json("benchmark", benchmark_output.as_json(runs))
     else:

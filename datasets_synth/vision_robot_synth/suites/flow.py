@@ -181,4 +181,4 @@ def _time(method: FlowMethod, pairs: Iterator[Pair]) -> dict[str, float]:
     return {"latency_p50_ms": float(np.median(taken))}
 
 
-SUITE = Suite("flow", tuple(SCENES), tuple(FLOW_METHODS), "flow_epe_px", 1.0, cells, on_data)
+SUITE = Suite("flow", tuple(SCENES), tuple(FLOW_METHODS), "flow_epe_px", 1.0, cells, on_data=on_data)

@@ -17,7 +17,7 @@ class Plan:
 
     scenes: tuple[str, ...] = ()
     methods: tuple[str, ...] = ()
-    seeds: int = 10
+    seeds: int = 12
     first_seed: int = 0
     frames: int | None = None
     size: tuple[int, int] | None = None
@@ -52,6 +52,8 @@ class Suite:
     threshold: float
     """Of `metric`, under which a method counts as broken on a dial."""
     cells: Callable[[Plan], Sequence[Cell]]
+    timing: str = ""
+    """How its times are measured, where that is not the usual way; for the page."""
     on_data: Callable[[Path], "Suite"] | None = None
     """The suite on a folder of one's own data; each sequence is a scene and, as its number, a seed."""
 

@@ -19,6 +19,7 @@ from vision_robot.evaluate.tracking.labelled import judged, labelled_frames
 from vision_robot.evaluate.tracking.pursuit import Pursuit, pursue
 from vision_robot.evaluate.tracking.streaming import streamed
 from vision_robot.machine.memory import PeakMemory, read_bandwidth
+from vision_robot.report.film_strip import film_strip
 from vision_robot.tracks import Tracks
 from vision_robot.video import Frame
 from vision_robot_synth.suites.rendered import rendered_set
@@ -33,6 +34,8 @@ WARM_UP = 5
 
 MOST_TIMED = 200
 """Frames of one's own video that are timed."""
+
+SHOWN_FRAMES = 4
 
 ODD = ("window", "median_px")
 """Options that are odd numbers."""
@@ -68,15 +71,29 @@ class Clip:
         heights = self.data.truth.extra.get("z_mm", np.zeros(0))
         return float(np.nanmedian(heights)) / 1e3 if np.isfinite(heights).any() else 0.0
 
+    def strip(self, answer: Tracks) -> str:
+        """Some frames with the boxes of truth and answer."""
+        chosen = np.linspace(0, len(self) - 1, min(SHOWN_FRAMES, len(self))).round().astype(int)
+        numbers = [self.range[k] for k in chosen]
+        images = [frame.image for frame in self if frame.index in numbers]
+        truth, found = (
+            [table.box_px[table.frame == number] for number in numbers]
+            for table in judged(self.data, answer, self.range.start)
+        )
+        return film_strip(images, truth, found, names=[f"frame {number}" for number in numbers])
+
     def figures(self, answer: Tracks) -> dict[str, float]:
         """Of an answer with the video's own numbers of frames."""
         return tracking_figures(*judged(self.data, answer, self.range.start))
 
 
-def tracker_figures(workspace: Path, method: str, video: Mapping[str, Any]) -> Measured:
-    """All figures but times."""
+def tracker_figures(
+    workspace: Path, method: str, video: Mapping[str, Any], *, strip: bool = False
+) -> Measured:
+    """All figures but times, and what they look like if that is wanted."""
     clip = _clip(workspace, video)
-    return Measured(clip.figures(clip.pursued(method, {}).tracks))
+    answer = clip.pursued(method, {}).tracks
+    return Measured(clip.figures(answer), clip.strip(answer) if strip else None)
 
 
 def variant_figures(
@@ -89,12 +106,14 @@ def variant_figures(
     return clip.figures(clip.pursued(method, {option: varied(option, usual, factor)}).tracks)
 
 
-def command_figures(workspace: Path, command: str, video: Mapping[str, Any]) -> Measured:
+def command_figures(
+    workspace: Path, command: str, video: Mapping[str, Any], *, strip: bool = False
+) -> Measured:
     """Figures of a program that reads the video and writes its tracks."""
     clip = _clip(workspace, video)
     images = (frame.image for frame in clip)
-    answer = tracks_of_command(command, images, clip.data.size, clip.data.fps)
-    return Measured(clip.figures(_moved(answer, clip.range.start)))
+    answer = _moved(tracks_of_command(command, images, clip.data.size, clip.data.fps), clip.range.start)
+    return Measured(clip.figures(answer), clip.strip(answer) if strip else None)
 
 
 def tracker_times(workspace: Path, method: str, video: Mapping[str, Any]) -> dict[str, float]:

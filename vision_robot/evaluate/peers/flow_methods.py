@@ -62,8 +62,8 @@ def _dis(preset: int) -> FlowMethod:
 
 
 def _tvl1() -> FlowMethod:
-    peer = cv2.optflow.DualTVL1OpticalFlow_create()
-    return lambda first, second: peer.calc(first, second, None)
+    peer = cv2.optflow.DualTVL1OpticalFlow.create()
+    return lambda first, second: peer.calc(first, second, None)  # type: ignore[call-overload]
 
 
 def _zero() -> FlowMethod:

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Any
 
 import vision_robot
@@ -81,6 +81,8 @@ class Outcome:
     """Some frames side by side, as a data URI."""
     machine: str = ""
     """Where it was measured."""
+    cpu_seconds: float | None = None
+    """Processor time of the process: less than `seconds` where it had to wait."""
 
 
 def measure(cell: Cell, workspace: Path) -> Outcome:
@@ -88,7 +90,7 @@ def measure(cell: Cell, workspace: Path) -> Outcome:
 
     What is the machine's fault and not the method's is raised: UnwritableOutput (a full disk), MissingOpenGL.
     """
-    start = perf_counter()
+    start, cpu = perf_counter(), process_time()
     figures: Mapping[str, float] = {}
     failure, strip = None, None
     try:
@@ -103,7 +105,8 @@ def measure(cell: Cell, workspace: Path) -> Outcome:
         if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
             raise UnwritableOutput(workspace, error.strerror or str(error)) from error
         failure = f"{type(error).__name__}: {error}"
-    return Outcome(cell, figures, failure, perf_counter() - start, _peak_memory(), strip, this_machine())
+    taken = perf_counter() - start
+    return Outcome(cell, figures, failure, taken, _peak_memory(), strip, this_machine(), process_time() - cpu)
 
 
 def _peak_memory() -> int:

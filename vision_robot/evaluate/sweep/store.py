@@ -61,4 +61,5 @@ def _outcome(content: dict[str, Any]) -> Outcome:
         peak_memory_bytes=content["peak_memory_bytes"],
         strip=content.get("strip"),
         machine=content.get("machine", ""),
+        cpu_seconds=content.get("cpu_seconds"),
     )
