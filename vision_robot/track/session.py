@@ -17,7 +17,7 @@ from vision_robot.track.sources import Source, frames_of
 from vision_robot.track.still_camera import StillCamera
 from vision_robot.track.tracker import LooksAhead, Remark, Tracker
 from vision_robot.tracks import Tracks
-from vision_robot.types import Array, Float
+from vision_robot.types import Array
 from vision_robot.video import Frame, Video
 
 __all__ = ["Latency", "Session", "Step", "track"]
@@ -103,7 +103,7 @@ class Session:
     def rest(self) -> Tracks:
         """The rows that were waiting for their tracks to be confirmed; to be called once, at the end."""
         parts = self._follower.finish() if self._follower else []
-        return _stacked([self._measured(part) for part in parts])
+        return Tracks.joined([self._measured(part) for part in parts])
 
     def remarks(self) -> tuple[Remark, ...]:
         """What the tracker says of itself, and what was seen of camera and clock."""
@@ -160,19 +160,7 @@ def track(
     """All tracks of a video as one table: `vr track video` without its files."""
     session = Session(tracker, follow=follow, plane=plane, z_m=z_m)
     parts = [step.final for step in session.run(source)]
-    return _stacked([*parts, session.rest()])
-
-
-def _stacked(parts: list[Tracks]) -> Tracks:
-    parts = [part for part in parts if len(part)]
-    if not parts:
-        return Tracks.empty()
-    names = [name for name in Tracks.__dataclass_fields__ if name != "extra"]
-    columns: dict[str, Float[Array, ...]] = {
-        name: np.concatenate([getattr(part, name) for part in parts]) for name in names
-    }
-    extra = {name: np.concatenate([part.extra[name] for part in parts]) for name in parts[0].extra}
-    return Tracks(**columns, extra=extra)
+    return Tracks.joined([*parts, session.rest()])
 
 
 def _eight_bits(image: Array) -> Array:
