@@ -54,6 +54,8 @@ class Suite:
     cells: Callable[[Plan], Sequence[Cell]]
     timing: str = ""
     """How its times are measured, where that is not the usual way; for the page."""
+    axes: Mapping[str, str] = field(default_factory=dict)
+    """What the severities of each dial are, in words; for the page."""
     on_data: Callable[[Path], "Suite"] | None = None
     """The suite on a folder of one's own data; each sequence is a scene and, as its number, a seed."""
 
