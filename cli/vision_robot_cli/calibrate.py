@@ -5,7 +5,17 @@ from typing import Annotated
 
 import typer
 
-from vision_robot_cli.options import BoardName, BoardOption, BoardSize, Json, Out, Report, Seed, Square
+from vision_robot_cli.options import (
+    BoardName,
+    BoardOption,
+    BoardSize,
+    Json,
+    Out,
+    Report,
+    Seed,
+    Square,
+    Topic,
+)
 
 __all__ = ["calibrate"]
 
@@ -14,9 +24,10 @@ def calibrate(
     images: Annotated[
         list[str] | None,
         typer.Argument(
-            help="Photos, folders, quoted patterns or one video; nothing: a rendered set with truth."
+            help="Photos, folders, quoted patterns, a video or ROS bag; nothing: a rendered set with truth."
         ),
     ] = None,
+    topic: Topic = None,
     board: BoardName = "chessboard",
     size: BoardSize = "9x6",
     square: Square = "25mm",
@@ -80,7 +91,7 @@ def calibrate(
     else:
         chosen = target(board, size, square, board_option or ())
         given = (
-            calibration_input.from_pictures(images, chosen)
+            calibration_input.from_pictures(images, chosen, topic)
             if images
             else calibration_input.rendered(chosen, views, seed)
         )

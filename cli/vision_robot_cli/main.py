@@ -80,7 +80,6 @@ def group_of(name: str, group: Group) -> Any:
 
 app = typer.Typer(
     cls=LazyGroup,
-    add_completion=False,
     rich_markup_mode=None,
     invoke_without_command=True,
     epilog=DEBUG_HELP,

@@ -17,6 +17,7 @@ __all__ = [
     "Seed",
     "Square",
     "Synthetic",
+    "Topic",
 ]
 
 BoardName = Annotated[
@@ -50,4 +51,7 @@ CameraName = Annotated[
 ]
 Synthetic = Annotated[
     bool, typer.Option("--synthetic", help="Pictures rendered in MuJoCo, the result beside the truth.")
+]
+Topic = Annotated[
+    str | None, typer.Option("--topic", help="Topic of a ROS bag, where several of it hold pictures.")
 ]

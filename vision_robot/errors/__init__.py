@@ -8,6 +8,7 @@ as attributes so that a caller can act on it without parsing text.
 from .arms import BadArm, BadGoal, BadPath, MissingLimits, UnknownStructure, Unreachable
 from .links import BadPort, CommandRefused, LinkMismatch, NoAnswer, NoScheduler, NothingSeen, PeerFailed
 from .pictures import (
+    BadBag,
     BadDataset,
     BadFrame,
     BadRecipe,
@@ -46,6 +47,7 @@ from .views import (
 __all__ = [
     "AmbiguousPlane",
     "BadArm",
+    "BadBag",
     "BadCameraFile",
     "BadCornerFile",
     "BadDataset",
