@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from vision_robot_cli import completions
+
 __all__ = [
     "BoardName",
     "BoardOption",
@@ -21,7 +23,12 @@ __all__ = [
 ]
 
 BoardName = Annotated[
-    str, typer.Option("--board", help="chessboard, charuco, circles, acircles or aprilgrid.")
+    str,
+    typer.Option(
+        "--board",
+        help="chessboard, charuco, circles, acircles or aprilgrid.",
+        autocompletion=completions.boards,
+    ),
 ]
 BoardSize = Annotated[
     str,

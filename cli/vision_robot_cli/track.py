@@ -53,6 +53,7 @@ def video(
     """Track objects in a video from a fixed camera: -o tracks.csv, tracks.json or mot.txt.
 
     Example: vr track video belt.mp4 --tracker rgb --color red -o tracks.csv --report tracks.html
+    Example: vr track video run.mcap --topic /camera/image_raw -o tracks.csv
     """
     from vision_robot.track.sources import open_recording
     from vision_robot_cli.track_input import plane_of, tracker_of
