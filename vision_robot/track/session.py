@@ -13,12 +13,12 @@ from vision_robot.track.admission import Admission
 from vision_robot.track.blobs import Blobs
 from vision_robot.track.follow import Follower, FollowOptions
 from vision_robot.track.on_plane import OnPlane
-from vision_robot.track.sources import Source, frames_of
+from vision_robot.track.sources import Recording, Source, frames_of, open_recording
 from vision_robot.track.still_camera import StillCamera
 from vision_robot.track.tracker import LooksAhead, Remark, Tracker
 from vision_robot.tracks import Tracks
 from vision_robot.types import Array
-from vision_robot.video import Frame, Video
+from vision_robot.video import Frame
 
 __all__ = ["Latency", "Session", "Step", "track"]
 
@@ -93,8 +93,8 @@ class Session:
         BadVideo for frames that cannot be used, after all steps before them.
         """
         if isinstance(source, str | Path):
-            source = Video(source)
-        recorded = isinstance(source, Video | Sized)
+            source = open_recording(source)
+        recorded = isinstance(source, Recording | Sized)
         if recorded and isinstance(self.tracker, LooksAhead):
             self.tracker.learn((frame.image, frame.time_s) for frame in frames_of(source))
         for frame in frames_of(source):
