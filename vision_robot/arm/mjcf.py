@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vision_robot.arm.model import Arm, one_of
+from vision_robot.arm.model_size import refuse_oversized
 from vision_robot.errors import BadArm
 from vision_robot.geometry import SE3, SerialChain
 from vision_robot.types import Array, Float
@@ -34,10 +35,12 @@ def compiled(path: Path) -> "MjModel":
     """MuJoCo's compiled model; without its shapes where only those cannot be had. Raises BadArm."""
     from vision_robot.sim.gl import load_mujoco
 
+    refuse_oversized(path)
     mujoco = load_mujoco(rendering=False)
+    # Not only ValueError: what MuJoCo's compiler does not foresee comes as RuntimeError.
     try:
         return mujoco.MjModel.from_xml_path(str(path))
-    except ValueError as error:
+    except (ValueError, RuntimeError, MemoryError) as error:
         why = " ".join(str(error).split())
     try:
         # Meshes often stay behind when a model is passed on; kinematics need none.
@@ -46,7 +49,7 @@ def compiled(path: Path) -> "MjModel":
             spec.delete(shape)
         spec.compiler.boundmass = spec.compiler.boundinertia = 1e-3
         return spec.compile()
-    except ValueError:
+    except (ValueError, RuntimeError, MemoryError):
         raise BadArm(path, why) from None
 
 

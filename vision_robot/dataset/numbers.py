@@ -6,17 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from vision_robot.errors import BadTable
+from vision_robot.reading import LARGEST_TABLE, read_text
 from vision_robot.types import Array, Float
 
-__all__ = ["read_numbers", "read_words"]
-
-
-def read_words(path: Path) -> str:
-    """The text of a file. Raises BadTable where there is none."""
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise BadTable(path, getattr(error, "strerror", None) or "it is not text") from error
+__all__ = ["read_numbers"]
 
 
 def read_numbers(path: Path, least: int, most: int) -> tuple[Float[Array, "rows most"], list[int]]:
@@ -26,7 +19,7 @@ def read_numbers(path: Path, least: int, most: int) -> tuple[Float[Array, "rows 
     `most`, and for anything that is no number.
     """
     rows, lines = [], []
-    for number, line in enumerate(read_words(path).splitlines(), start=1):
+    for number, line in enumerate(read_text(path, BadTable, LARGEST_TABLE).splitlines(), start=1):
         words = [word for word in re.split(r"[,;\s]+", line.strip()) if word]
         if not words:
             continue

@@ -1,0 +1,119 @@
+"""Reading files that may come from anywhere, within limits.
+
+Every reader begins here and says which error of its kind a refusal is. Devices and pipes have no end,
+gigabytes are no table, and trees may nest deeper or count higher than any program: all of it is refused
+in one line before it costs time or memory.
+"""
+
+import csv
+import io
+import json
+import tomllib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from vision_robot.errors import BadInput
+
+__all__ = [
+    "LARGEST_PICTURE",
+    "LARGEST_TABLE",
+    "LARGEST_TREE",
+    "Refusal",
+    "csv_rows",
+    "json_tree",
+    "read_bytes",
+    "read_text",
+    "toml_tree",
+    "xml_root",
+]
+
+Refusal = Callable[[object, str], BadInput]
+"""The error to raise, of a path and a reason."""
+
+LARGEST_TREE = 16_000_000
+"""Bytes of JSON, TOML, XML: in memory they are up to thirty times as large."""
+LARGEST_TABLE = 512_000_000
+"""Bytes of a table: the tracks of a day of video."""
+LARGEST_PICTURE = 2_000_000_000
+"""Bytes of an encoded picture, or of a field of flow of 250 million pixels."""
+
+
+def read_bytes(path: Path | str, refuse: Refusal, largest: int) -> bytes:
+    """The bytes of a plain file of at most `largest` bytes."""
+    place = Path(path)
+    try:
+        # Opening a pipe would wait for its other end.
+        if not place.is_file():
+            raise refuse(path, "it is not a plain file" if place.exists() else "there is no such file")
+        with place.open("rb") as file:
+            data = file.read(largest + 1)
+    except (OSError, ValueError) as error:
+        raise refuse(path, getattr(error, "strerror", None) or str(error)) from error
+    if len(data) > largest:
+        raise refuse(path, f"it is larger than {largest // 1_000_000} MB")
+    return data
+
+
+def read_text(path: Path | str, refuse: Refusal, largest: int = LARGEST_TREE) -> str:
+    """The text of such a file, UTF-8 with or without its mark, lines ending in one newline."""
+    data = read_bytes(path, refuse, largest)
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise refuse(path, f"byte {error.start} is not text in UTF-8") from error
+    if "\0" in text:
+        raise refuse(path, f"it is not text: character {text.index(chr(0))} is zero")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def csv_rows(text: str, path: object, refuse: Refusal, mark: str = ",") -> Iterator[tuple[int, list[str]]]:
+    """Line and cells of each row that is not empty, one after the other."""
+    reader = csv.reader(io.StringIO(text), delimiter=mark)
+    while True:
+        try:
+            row = next(reader, None)
+        except csv.Error as error:
+            raise refuse(path, f"line {reader.line_num}: {error}") from error
+        if row is None:
+            return
+        if row:
+            yield reader.line_num, row
+
+
+def json_tree(text: str, path: object, refuse: Refusal) -> Any:
+    """What JSON says; whole numbers beyond all counting come as floats."""
+    try:
+        return json.loads(text, parse_int=_whole)
+    except json.JSONDecodeError as error:
+        raise refuse(path, f"line {error.lineno}: {error.msg}") from error
+    except RecursionError as error:
+        raise refuse(path, "it is nested too deeply") from error
+
+
+def toml_tree(text: str, path: object, refuse: Refusal) -> dict[str, Any]:
+    """What TOML says."""
+    try:
+        return tomllib.loads(text)
+    except ValueError as error:  # TOMLDecodeError, and whole numbers of thousands of digits
+        raise refuse(path, f"it is no TOML: {error}") from error
+    except RecursionError as error:
+        raise refuse(path, "it is nested too deeply") from error
+
+
+def xml_root(data: bytes | str, path: object, refuse: Refusal) -> ElementTree.Element:
+    """The root of an XML document without a DOCTYPE, whose entities may multiply without end."""
+    try:
+        return ElementTree.fromstring(data, ElementTree.XMLParser(target=_Plain()))
+    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        raise refuse(path, f"it is no XML that is read ({error})") from error
+
+
+class _Plain(ElementTree.TreeBuilder):
+    def doctype(self, name: str, pubid: str, system: str) -> None:  # noqa: ARG002 - the parser's signature
+        raise ValueError("it has a DOCTYPE")
+
+
+def _whole(digits: str) -> int | float:
+    return int(digits) if len(digits) < 18 else float(digits)
