@@ -21,6 +21,10 @@ IMAGE_SUFFIXES = (
 )  # fmt: skip
 VIDEO_SUFFIXES = (".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".webm")
 
+DENSEST = 1032
+"""Bytes that deflate packs into one, and more than the pixels that a byte of a JPEG can stand for. Files that
+claim more are cut off, but decoders make room for the whole before they find out."""
+
 VIDEO_PICTURES = 60
 """So many pictures are taken from a video unless `every` says otherwise."""
 
@@ -129,15 +133,32 @@ def _reader(file: Path) -> Callable[[], Image]:
 def _is_cut_off(data: bytes) -> bool:
     """Whether a JPEG or PNG lacks its end mark: decoders then fill the rest with grey and say nothing."""
     if data.startswith(b"\x89PNG\r\n\x1a\n"):
-        return b"IEND" not in data
+        return _png_is_cut_off(data)
     if not data.startswith(b"\xff\xd8\xff"):
         return False
     at = 2
     while at + 4 <= len(data) and data[at] == 0xFF:
         marker, length = data[at + 1], int.from_bytes(data[at + 2 : at + 4])
+        if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):  # a frame's size
+            height, width = int.from_bytes(data[at + 5 : at + 7]), int.from_bytes(data[at + 7 : at + 9])
+            if width * height > DENSEST * len(data):
+                return True
         if marker == 0xDA:  # the scan: from here on, a bare end mark is one
             return data.find(b"\xff\xd9", at) < 0
         at += 1 if marker == 0xFF else 2 + length
+    return True
+
+
+def _png_is_cut_off(data: bytes) -> bool:
+    width, height = int.from_bytes(data[16:20]), int.from_bytes(data[20:24])
+    if width * height > 8 * DENSEST * len(data):
+        return True
+    at = 8
+    while at + 12 <= len(data):
+        length, kind = int.from_bytes(data[at : at + 4]), data[at + 4 : at + 8]
+        at += 12 + length
+        if kind == b"IEND":
+            return at > len(data)
     return True
 
 

@@ -8,6 +8,8 @@ in one line before it costs time or memory.
 import csv
 import io
 import json
+import math
+import re
 import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -23,15 +25,20 @@ __all__ = [
     "Refusal",
     "csv_rows",
     "json_tree",
+    "number",
     "read_bytes",
     "read_text",
     "toml_tree",
     "xml_root",
 ]
 
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
+
 Refusal = Callable[[object, str], BadInput]
 """The error to raise, of a path and a reason."""
 
+LARGEST_NUMBER = 1e18
+"""Beyond it no length, angle, pixel or count is meant, and squares of sums still have room."""
 LARGEST_TREE = 16_000_000
 """Bytes of JSON, TOML, XML: in memory they are up to thirty times as large."""
 LARGEST_TABLE = 512_000_000
@@ -47,13 +54,13 @@ def read_bytes(path: Path | str, refuse: Refusal, largest: int) -> bytes:
         # Opening a pipe would wait for its other end.
         if not place.is_file():
             raise refuse(path, "it is not a plain file" if place.exists() else "there is no such file")
+        if place.stat().st_size > largest:
+            raise refuse(path, f"it is larger than {largest // 1_000_000} MB")
         with place.open("rb") as file:
-            data = file.read(largest + 1)
+            # Python makes room for as much as it is asked to read.
+            return file.read(place.stat().st_size)
     except (OSError, ValueError) as error:
         raise refuse(path, getattr(error, "strerror", None) or str(error)) from error
-    if len(data) > largest:
-        raise refuse(path, f"it is larger than {largest // 1_000_000} MB")
-    return data
 
 
 def read_text(path: Path | str, refuse: Refusal, largest: int = LARGEST_TREE) -> str:
@@ -66,6 +73,15 @@ def read_text(path: Path | str, refuse: Refusal, largest: int = LARGEST_TREE) ->
     if "\0" in text:
         raise refuse(path, f"it is not text: character {text.index(chr(0))} is zero")
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def number(text: str) -> float | None:
+    """The decimal number of a cell, NaN for nan; None for all else, so for 1_000, inf and 1e300."""
+    plain = text.strip()
+    if _NUMBER.fullmatch(plain) is None:
+        return math.nan if plain.lower() == "nan" else None
+    value = float(plain)
+    return value if abs(value) <= LARGEST_NUMBER else None
 
 
 def csv_rows(text: str, path: object, refuse: Refusal, mark: str = ",") -> Iterator[tuple[int, list[str]]]:

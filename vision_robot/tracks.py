@@ -9,7 +9,7 @@ import numpy as np
 
 from vision_robot.errors import BadTable
 from vision_robot.files import write_text
-from vision_robot.reading import LARGEST_TABLE, csv_rows, read_text
+from vision_robot.reading import LARGEST_TABLE, csv_rows, number, read_text
 from vision_robot.types import Array, Float, Int
 
 __all__ = ["COLUMNS", "Tracks"]
@@ -151,10 +151,9 @@ def _number(cell: str, source: object, line: int, column: str) -> float:
     text = cell.strip()
     if not text:
         return np.nan
-    try:
-        value = float(text)
-    except ValueError:
-        raise BadTable(source, f"line {line}: {column} is {cell!r}, not a number") from None
-    if not np.isfinite(value):
+    value = number(text)
+    if value is None:
+        raise BadTable(source, f"line {line}: {column} is {cell!r}, not a number")
+    if np.isnan(value):
         raise BadTable(source, f"line {line}: {column} is {cell!r}; leave it empty where it is unknown")
     return value

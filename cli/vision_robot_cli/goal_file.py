@@ -9,7 +9,7 @@ import numpy as np
 from vision_robot.arm.workspace import tool_down
 from vision_robot.errors import BadPoseFile
 from vision_robot.geometry import SE3
-from vision_robot.reading import csv_rows, json_tree, read_text
+from vision_robot.reading import csv_rows, json_tree, number, read_text
 
 __all__ = ["Goals", "read_goals"]
 
@@ -95,10 +95,7 @@ def _places(path: Path, rows: list[tuple[str, dict[str, object]]]) -> Goals | No
 
 def _number(path: Path, where: str, row: Mapping[str, object], name: str) -> float:
     value = row.get(name)
-    try:
-        number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        number = np.nan
-    if not np.isfinite(number):
+    found = number(str(value))
+    if found is None or np.isnan(found):
         raise BadPoseFile(path, f"{where}: {name} is {str(value)[:40]!r}, not a finite number")
-    return number
+    return found

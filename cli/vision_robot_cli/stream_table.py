@@ -10,7 +10,7 @@ from vision_robot.arm.export_c import fingerprint
 from vision_robot.arm.stream import JointTable, Link, PoseTable, SerialPort, play
 from vision_robot.errors import BadTable
 from vision_robot.files import check_place
-from vision_robot.reading import csv_rows, read_text
+from vision_robot.reading import csv_rows, number, read_text
 from vision_robot_cli.goal_file import read_goals
 from vision_robot_cli.output import progress
 
@@ -56,10 +56,10 @@ def _times(path: Path) -> np.ndarray | None:
     if "time_s" not in names:
         return None
     column = names.index("time_s")
-    try:
-        return np.array([float(row[column]) for row in rows[1:]])
-    except (IndexError, ValueError):
-        raise BadTable(path, "its column time_s must hold a number in every row") from None
+    times = [number(row[column]) if len(row) > column else None for row in rows[1:]]
+    if None in times:
+        raise BadTable(path, "its column time_s must hold a number in every row")
+    return np.array(times, dtype=float)
 
 
 def played(

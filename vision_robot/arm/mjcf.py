@@ -62,6 +62,9 @@ def chain_of_model(
     base: str | None = None,
 ) -> Arm:
     """The serial chain from base to tool in a compiled model, `path` being named in errors."""
+    placed = (model.body_pos, model.body_quat, model.jnt_pos, model.jnt_axis, model.site_pos, model.site_quat)
+    if not all(np.isfinite(numbers).all() for numbers in (*placed, model.qpos0, model.jnt_range)):
+        raise BadArm(path, "a place, an axis or a limit in it is not a finite number")
     sites = [model.site(i).name for i in range(model.nsite)]
     bodies = [model.body(i).name for i in range(model.nbody)]
     if tool is None or tool not in bodies:

@@ -12,7 +12,7 @@ import numpy as np
 
 from vision_robot.calibrate.corners import Corners
 from vision_robot.errors import BadCornerFile, BadParameter
-from vision_robot.reading import read_text
+from vision_robot.reading import number, read_text
 from vision_robot.types import Array, Float
 
 __all__ = ["read_corner_folder", "read_model_points", "size_holding"]
@@ -77,12 +77,10 @@ def _read_pairs(path: Path) -> Float[Array, "n 2"]:
     numbers = []
     for line_number, line in enumerate(text.splitlines(), start=1):
         for word in line.split("#")[0].replace(",", " ").split():
-            try:
-                numbers.append(float(word))
-            except ValueError as error:
-                raise BadCornerFile(
-                    path, f"line {line_number} holds {word[:40]!r} where a number belongs"
-                ) from error
+            value = number(word)
+            if value is None:
+                raise BadCornerFile(path, f"line {line_number} holds {word[:40]!r} where a number belongs")
+            numbers.append(value)
     values = np.array(numbers)
     if not len(values) or len(values) % 2:
         raise BadCornerFile(path, f"it holds {len(values)} numbers where x, y pairs belong")

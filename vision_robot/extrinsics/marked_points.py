@@ -6,7 +6,7 @@ import numpy as np
 
 from vision_robot.calibrate.corners import Corners
 from vision_robot.errors import BadTable
-from vision_robot.reading import csv_rows, read_text
+from vision_robot.reading import csv_rows, number, read_text
 from vision_robot.types import Array, Float
 
 __all__ = ["read_marked_points", "read_table"]
@@ -47,10 +47,7 @@ def read_table(
 
 
 def _number(path: Path | str, line: int, column: str, cell: str) -> float:
-    try:
-        value = float(cell)
-    except ValueError:
-        value = float("nan")
-    if not np.isfinite(value):
+    value = number(cell)
+    if value is None or np.isnan(value):
         raise BadTable(path, f"line {line}: {column} is {cell.strip()!r}, not a finite number")
     return value

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vision_robot.reading import LARGEST_NUMBER
 from vision_robot_synth.recipe.colours import COLOURS, colour_named
 
 __all__ = ["Choice", "Colour", "Flag", "Kind", "Number", "Numbers", "Text", "Whole"]
@@ -62,7 +63,8 @@ class Number(Kind):
 
     def _number(self, value: Any) -> float | None:
         good = isinstance(value, int | float) and not isinstance(value, bool)
-        return float(value) if good and self.least <= value <= self.most and math.isfinite(value) else None
+        inside = good and self.least <= value <= self.most and abs(value) <= LARGEST_NUMBER
+        return float(value) if inside else None
 
     def drawn(self, value: Any, rng: np.random.Generator) -> Any:
         """Evenly from the pair."""

@@ -9,7 +9,7 @@ import numpy as np
 from vision_robot.errors import BadTable
 from vision_robot.files import write_text
 from vision_robot.geometry.chain import SerialChain
-from vision_robot.reading import LARGEST_TABLE, csv_rows, read_text
+from vision_robot.reading import LARGEST_TABLE, csv_rows, number, read_text
 from vision_robot.types import Array, Float
 
 __all__ = ["JointTable"]
@@ -117,11 +117,10 @@ def _column(header: Sequence[str], joint: str, scales: dict[str, float], source:
 
 
 def _number(cell: str, source: object, line: int, column: str) -> float:
-    try:
-        value = float(cell)
-    except ValueError:
-        raise BadTable(source, f"line {line}: {column} is {cell!r}, not a number") from None
-    if not np.isfinite(value):
+    value = number(cell)
+    if value is None:
+        raise BadTable(source, f"line {line}: {column} is {cell!r}, not a number")
+    if np.isnan(value):
         raise BadTable(source, f"line {line}: {column} is {cell!r}, not finite")
     return value
 

@@ -15,7 +15,7 @@ import numpy as np
 from vision_robot.calibrate.hand_eye.pose_columns import columns_of, table_of
 from vision_robot.calibrate.hand_eye.pose_table import PoseTable
 from vision_robot.errors import BadPoseFile
-from vision_robot.reading import csv_rows, json_tree, read_text
+from vision_robot.reading import csv_rows, json_tree, number, read_text
 
 __all__ = ["read_poses"]
 
@@ -52,7 +52,7 @@ def _from_lines(text: str, path: Path) -> tuple[list[str] | None, list[list[str]
 
     table = [(i, split(line)) for i, line in lines]
     first = table[0][1]
-    has_header = sum(_is_number(cell) for cell in first) <= 1 and len(first) > 1
+    has_header = sum(number(cell) is not None for cell in first) <= 1 and len(first) > 1
     header = first if has_header else None
     body = table[1:] if has_header else table
     width = len(first)
@@ -131,11 +131,3 @@ def _flattened(item: Mapping) -> Sequence[tuple[str, object]]:
 def _even(value: list) -> bool:
     """Whether a list is flat, or rows of one length."""
     return len({len(row) if isinstance(row, list) else -1 for row in value}) == 1
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True

@@ -58,8 +58,12 @@ def _read(path: Path) -> Outcome:
 def _outcome(content: dict[str, Any]) -> Outcome:
     if content["schema"] != SCHEMA:
         raise ValueError(content["schema"])
+    cell = Cell(**content["cell"])
+    words = (cell.suite, cell.scene, cell.method, cell.work, content["failure"] or "", *content["figures"])
+    if not all(isinstance(word, str) for word in words) or not isinstance(cell.seed, int):
+        raise TypeError(f"words and a seed expected, {words} and {cell.seed} found")
     return Outcome(
-        cell=Cell(**content["cell"]),
+        cell=cell,
         # What JSON has no number for stands there as a word: nan, inf.
         figures={name: float(value) for name, value in content["figures"].items()},
         failure=content["failure"],
