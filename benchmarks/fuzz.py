@@ -27,6 +27,7 @@ from table import markdown, shown
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
+from tests.fuzz.limits import limit_memory, resident_mb  # noqa: E402
 from tests.fuzz.readers import SUBJECTS  # noqa: E402
 from tests.fuzz.subject import Case, attempt  # noqa: E402
 
@@ -137,30 +138,15 @@ def work(name: str, first: int, stop: int, answers: Connection) -> None:
         seeds = subject.seeds(Path(root) / "seeds")
         folder = Path(root) / "case"
         folder.mkdir()
-        attempt(Case(subject, seeds, 0), folder)  # what it imports is not the file's fault
-        limit_memory()
+        attempt(subject, Case(subject, seeds, 0).write, folder)  # what it imports is not the file's fault
+        limit_memory(MEGABYTES)
         for number in range(first, stop):
             before, start = resident_mb(), perf_counter()
-            end = attempt(Case(subject, seeds, number), folder)
+            end = attempt(subject, Case(subject, seeds, number).write, folder)
             took = perf_counter() - start
             peak = max(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024 - before, 0.0)
             answers.send((end, took, peak))
     answers.close()
-
-
-def limit_memory() -> None:
-    """So much more address space than now, and no core files."""
-    with Path("/proc/self/statm").open(encoding="ascii") as file:
-        now = int(file.read().split()[0]) * resource.getpagesize()
-    most = now + MEGABYTES * 1_000_000
-    resource.setrlimit(resource.RLIMIT_AS, (most, most))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-
-
-def resident_mb() -> float:
-    """Memory that the process holds now."""
-    with Path("/proc/self/statm").open(encoding="ascii") as file:
-        return int(file.read().split()[1]) * resource.getpagesize() / 1e6
 
 
 def silence() -> None:

@@ -19,6 +19,8 @@ from xml.etree import ElementTree
 from vision_robot.errors import BadInput
 
 __all__ = [
+    "LARGEST_NUMBER",
+    "LARGEST_OPTIONS",
     "LARGEST_PICTURE",
     "LARGEST_TABLE",
     "LARGEST_TREE",
@@ -33,6 +35,7 @@ __all__ = [
 ]
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
+_DOTTED = re.compile(r"""(?:[\w"'-]+[ \t]*\.[ \t]*){100}""")
 
 Refusal = Callable[[object, str], BadInput]
 """The error to raise, of a path and a reason."""
@@ -40,7 +43,11 @@ Refusal = Callable[[object, str], BadInput]
 LARGEST_NUMBER = 1e18
 """Beyond it no length, angle, pixel or count is meant, and squares of sums still have room."""
 LARGEST_TREE = 16_000_000
-"""Bytes of JSON, TOML, XML: in memory they are up to thirty times as large."""
+"""Bytes of JSON, YAML, XML: in memory they are up to thirty times as large."""
+DEEPEST = 1000
+"""Elements of XML in each other."""
+LARGEST_OPTIONS = 100_000
+"""Bytes of TOML."""
 LARGEST_TABLE = 512_000_000
 """Bytes of a table: the tracks of a day of video."""
 LARGEST_PICTURE = 2_000_000_000
@@ -110,6 +117,9 @@ def json_tree(text: str, path: object, refuse: Refusal) -> Any:
 
 def toml_tree(text: str, path: object, refuse: Refusal) -> dict[str, Any]:
     """What TOML says."""
+    if _DOTTED.search(text):
+        # Python's parser takes the square of their number.
+        raise refuse(path, "it is no TOML that is read: a key has a hundred dots")
     try:
         return tomllib.loads(text)
     except ValueError as error:  # TOMLDecodeError, and whole numbers of thousands of digits
@@ -127,6 +137,18 @@ def xml_root(data: bytes | str, path: object, refuse: Refusal) -> ElementTree.El
 
 
 class _Plain(ElementTree.TreeBuilder):
+    depth = 0
+
+    def start(self, tag: str, attrs: dict[str, str]) -> ElementTree.Element:
+        self.depth += 1
+        if self.depth > DEEPEST:
+            raise ValueError(f"it is nested more than {DEEPEST} deep")
+        return super().start(tag, attrs)
+
+    def end(self, tag: str) -> ElementTree.Element:
+        self.depth -= 1
+        return super().end(tag)
+
     def doctype(self, name: str, pubid: str, system: str) -> None:  # noqa: ARG002 - the parser's signature
         raise ValueError("it has a DOCTYPE")
 

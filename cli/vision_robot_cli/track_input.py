@@ -7,7 +7,7 @@ from typing import Any
 
 from vision_robot.errors import BadParameter
 from vision_robot.geometry.work_plane import WorkPlane
-from vision_robot.reading import read_text, toml_tree
+from vision_robot.reading import LARGEST_OPTIONS, read_text, toml_tree
 from vision_robot.track import Tracker, tracker_named
 from vision_robot.track.registry import tracker_class, tracker_names
 
@@ -81,7 +81,7 @@ def _bad_config(path: object, why: str) -> BadParameter:
 
 def _from_file(path: Path, tracker: str) -> dict[str, Any]:
     """The table named like the tracker in a TOML file; tables of other trackers are left alone."""
-    tables = toml_tree(read_text(path, _bad_config), path, _bad_config)
+    tables = toml_tree(read_text(path, _bad_config, LARGEST_OPTIONS), path, _bad_config)
     unknown = [
         name for name, table in tables.items() if name not in tracker_names() or not isinstance(table, dict)
     ]

@@ -22,5 +22,6 @@ def frame_note() -> FrameNote:
     """Two things, one of them seen."""
     others = [one.name for one in fields(ObjectTruth) if one.name not in ("names", POSE)]
     arrays: dict[str, Any] = {name: np.ones(SHAPES.get(name, (2,))) for name in others}
+    arrays["has_yaw"] = np.ones(2, dtype=bool)
     pose = SE3.from_rotvec(np.zeros((2, 3)), np.ones((2, 3)))
     return FrameNote(ObjectTruth(names=("rod", "ball"), **{POSE: pose}, **arrays), {1: [3, 4, 5]})

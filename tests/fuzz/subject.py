@@ -12,7 +12,7 @@ from random import Random
 from tests.fuzz.mutations import mutated
 from vision_robot.errors import BadInput, VisionRobotError
 
-__all__ = ["Case", "Subject", "attempt"]
+__all__ = ["Case", "Files", "Subject", "attempt"]
 
 Files = Mapping[str, bytes]
 
@@ -72,19 +72,19 @@ class Case:
             (folder / name).write_bytes(data)
 
 
-def attempt(case: Case, folder: Path) -> str:
-    """Read the case from an empty folder in this process: "read", "refused", or what went wrong."""
+def attempt(subject: Subject, write: Callable[[Path], object], folder: Path) -> str:
+    """Read what `write` puts into an empty folder: "read", "refused", or what went wrong."""
     inside = folder / "inside"
     inside.mkdir()
-    case.write(inside)
+    write(inside)
     before = Path.cwd()
     os.chdir(folder)  # so that what is written to a careless place is seen
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            case.subject.read(inside)
+            subject.read(inside)
         end = "read"
-    except case.subject.ends as error:
+    except subject.ends as error:
         text = str(error)
         end = "refused"
         if not text.isprintable() or len(text) > 10_000 or not isinstance(error, VisionRobotError):

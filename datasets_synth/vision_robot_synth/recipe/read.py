@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from vision_robot.errors import BadRecipe
-from vision_robot.reading import read_text, toml_tree
+from vision_robot.reading import LARGEST_OPTIONS, read_text, toml_tree
 from vision_robot_synth.recipe.parts import PARTS, Key, ThingPart, VideoPart, keys_of
 from vision_robot_synth.recipe.recipe import Recipe
 from vision_robot_synth.recipe.sensor_keys import SENSOR_KEYS
@@ -21,8 +21,6 @@ BASE = "base"
 
 OTHER_TABLES = ("things", "sensor", "severity")
 DEEPEST = 8
-LARGEST_RECIPE = 1_000_000
-"""Bytes."""
 
 
 def recipe_names() -> list[str]:
@@ -57,7 +55,7 @@ def _merged(path: Path, below: tuple[Path, ...]) -> dict[str, Any]:
     """The tables of a file laid over those it extends."""
     if path in below or len(below) > DEEPEST:
         raise BadRecipe(path.stem, f"it extends itself, by way of {', '.join(p.stem for p in below)}")
-    tree = toml_tree(read_text(path, BadRecipe, LARGEST_RECIPE), path.name, BadRecipe)
+    tree = toml_tree(read_text(path, BadRecipe, LARGEST_OPTIONS), path.name, BadRecipe)
     parent = tree.pop("extend", None)
     if parent is None:
         return tree
