@@ -26,6 +26,7 @@ class PickRun:
     """What was asked and what happened."""
 
     plan: Plan
+    world: World
     faults: Sequence[str]
     episodes: Sequence[Episode]
     budget: ErrorBudget | None
@@ -58,7 +59,7 @@ def pick_run(
     budget = None
     if with_budget:
         budget = budget_of(world, plan, seeds, workers)
-    return PickRun(plan, faults, episodes, budget)
+    return PickRun(plan, world, faults, episodes, budget)
 
 
 def _episodes(world: World, plan: Plan, seeds: Sequence[int], workers: int) -> Iterable[Episode]:

@@ -28,8 +28,8 @@ def test_stills_are_one_of_each_phase_and_marks_lie_on_the_thing():
     stills = Stills()
     episode = run_episode(WORLD, PLAN, 1, witness=stills)
     phases = [still.phase for still in stills.pictures]
-    assert [name for name in phases if name] == [
-        "seen", "above", "down", "close", "lift", "carry", "put down", "placed",
+    assert phases == [
+        "seen", "open", "above", "down", "close", "lift", "carry", "put down", "placed",
     ]  # fmt: skip
     times = [still.time_s for still in stills.pictures]
     assert times == sorted(times)

@@ -18,6 +18,7 @@ from .links import (
     ServoAstray,
 )
 from .pictures import (
+    BadBag,
     BadDataset,
     BadFrame,
     BadRecipe,
@@ -56,6 +57,7 @@ from .views import (
 __all__ = [
     "AmbiguousPlane",
     "BadArm",
+    "BadBag",
     "BadCameraFile",
     "BadCornerFile",
     "BadDataset",

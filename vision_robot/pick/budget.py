@@ -98,11 +98,14 @@ def _scene(world: World, plan: Plan, seed: int) -> _Scene:
     cell.reset(seed)
     cell.advance(0.3)
     name = world.design.items[0].name
+    believed = calibrated(world, seed)
     with Eye(cell, world, seed) as eye:
-        seen = look(cell, eye, tracker_named(plan.tracker, plan.options), name, world)
+        tracker = tracker_named(plan.tracker, plan.options)
+        seen = look(cell, eye, tracker, name, world, plane=believed.plane)
         truly = eye.truth_of(name)
-    thing, solver = cell.station_from(name), InverseKinematics(world.arm)
-    return _Scene(world, cell, calibrated(world, seed), name, thing, seen, truly, solver)
+    return _Scene(
+        world, cell, believed, name, cell.station_from(name), seen, truly, InverseKinematics(world.arm)
+    )
 
 
 def _miss(scene: _Scene, true_stages: frozenset[str], start: Float[Array, "n"]) -> Float[Array, "3"]:

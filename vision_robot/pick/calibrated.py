@@ -13,7 +13,7 @@ from vision_robot.pick.world import World
 from vision_robot.sim.viewpoints import board_poses
 from vision_robot.types import Array, Float
 
-__all__ = ["calibrated", "rigid_fit", "rigid_fit_covariance"]
+__all__ = ["BOARD", "ON_TABLE", "calibrated", "rigid_fit", "rigid_fit_covariance", "touched_station"]
 
 BOARD = Chessboard(9, 6, 0.025)
 VIEWS = 15
@@ -42,7 +42,7 @@ def calibrated(world: World, seed: int) -> Knowledge:
     station_from_board = on_station(ON_TABLE)
     on_table = _seen(world, world.view.cam_from_station @ station_from_board, "table", rng)
     plane = fit_plane(known, [on_table], points, station_from_board).plane
-    station, covariance = _touched(world, rng)
+    station, covariance = touched_station(world, rng)
     return Knowledge(plane, station, world.arm, covariance)
 
 
@@ -54,7 +54,7 @@ def _seen(world: World, cam_from_board: SE3, name: str, rng: np.random.Generator
     return Corners(name, np.arange(len(real)), noisy, np.full(len(real), world.corner_noise_px))
 
 
-def _touched(world: World, rng: np.random.Generator) -> tuple[SE3, Float[Array, "6 6"]]:
+def touched_station(world: World, rng: np.random.Generator) -> tuple[SE3, Float[Array, "6 6"]]:
     """base_from_station and its covariance, from where the arm believes its tool is on the marks."""
     solver, base, near = InverseKinematics(world.arm), world.design.base_from_station, None
     believed = []

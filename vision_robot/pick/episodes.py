@@ -83,7 +83,7 @@ def run_episode(
         except NothingSeen as error:
             episode = replace(episode, failure=str(error))
             if witness is not None:
-                witness.unseen(cell, eye, episode)
+                witness.unseen(cell, eye)
                 witness.ends(episode)
             return episode
         if "tracking" in plan.true_stages:

@@ -4,12 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
-import cv2
 import numpy as np
 
 from vision_robot.geometry import Camera
 from vision_robot.pick.episode import Episode, axis_angle, miss_of
-from vision_robot.pick.film_drawing import GOAL, SEEN, TOOL, Bar, cross, outline
+from vision_robot.pick.film_drawing import GOAL, SEEN, TOOL, WIDTH, beside, cross, outline
 from vision_robot.pick.hand_label import HandLabel, label_of
 from vision_robot.pick.knowledge import Knowledge
 from vision_robot.pick.look import Eye
@@ -27,11 +26,13 @@ LAST_S = 1.5
 """How long the last picture stands, with what came of it."""
 
 SIDE = look_at(
-    Camera(220, 165, 230.0, 230.0, 109.5, 82.0), (-0.42, -0.42, 0.30), (0.02, -0.02, 0.05), up=(0.0, 0.0, 1.0)
+    Camera(WIDTH, 180, 250.0, 250.0, 119.5, 89.5),
+    (-0.42, -0.42, 0.30),
+    (0.02, -0.02, 0.05),
+    up=(0.0, 0.0, 1.0),
 )
 """The inset's view, low from the side: how high the tool is over the thing."""
 
-MARGIN_PX = 8
 CARRYING = ("lift", "carry", "put down", "back")
 """Phases in which the thing is off its place: its error is then to the goal."""
 
@@ -46,6 +47,11 @@ class _Scene:
     believed: Knowledge
     where: Sighting
     episode: Episode
+
+    @property
+    def told(self) -> Float[Array, "n"]:
+        """What the encoders say at this moment."""
+        return self.player.world.told_joints(self.cell.joints)
 
     @cached_property
     def label(self) -> HandLabel | None:
@@ -81,9 +87,9 @@ class Film:
             self._sink(_picture(scene, "seen"))
         cell.watch(1 / self._fps, lambda: self._sink(_picture(scene, player.phase)))
 
-    def unseen(self, cell: Cell, eye: Eye, episode: Episode) -> None:
+    def unseen(self, cell: Cell, eye: Eye) -> None:
         """Nothing to film but an empty look."""
-        self._plain = _barred(eye.plain(), "nothing seen", episode.failure or "", cell.time_s)
+        self._plain = beside(eye.plain(), eye.through(SIDE), "nothing seen", [], cell.time_s)
 
     def ends(self, episode: Episode) -> None:
         """The outcome, standing for a moment."""
@@ -112,9 +118,9 @@ class Stills:
         self._keep(_picture(scene, "seen"))
         cell.watch(0.02, self._look)
 
-    def unseen(self, cell: Cell, eye: Eye, episode: Episode) -> None:
+    def unseen(self, cell: Cell, eye: Eye) -> None:
         """The empty look."""
-        picture = _barred(eye.plain(), "nothing seen", episode.failure or "", cell.time_s)
+        picture = beside(eye.plain(), eye.through(SIDE), "nothing seen", [], cell.time_s)
         self.pictures.append(Still("nothing seen", cell.time_s, picture))
 
     def ends(self, episode: Episode) -> None:
@@ -139,12 +145,12 @@ class Stills:
 
 def film_size(camera: Camera) -> tuple[int, int]:
     """(width, height) of the film's pictures [px], even as some codecs want it."""
-    return camera.width + camera.width % 2, camera.height + Bar.HEIGHT + camera.height % 2
+    return camera.width + camera.width % 2 + WIDTH, camera.height + camera.height % 2
 
 
 def _picture(scene: _Scene, phase: str) -> Image:
     cell, believed, where = scene.cell, scene.believed, scene.where
-    image, plane = scene.eye.plain(), believed.plane
+    image, plane = scene.eye.plain().copy(), believed.plane
 
     def at(places_m: Float[Array, "n 2"], z_m: float) -> Float[Array, "n 2"]:
         return plane.pixels(places_m, z_m=z_m)
@@ -158,22 +164,12 @@ def _picture(scene: _Scene, phase: str) -> Image:
             image, at(_rectangle(where.position_m, where.yaw_rad, size[0], size[-1]), where.height_m), SEEN
         )
         cross(image, at(where.position_m[None], where.height_m)[0], SEEN)
-    told = believed.base_from_station.inverse() @ believed.arm.chain.base_from_tool(scene.player.joints)
+    told = believed.base_from_station.inverse() @ believed.arm.chain.base_from_tool(scene.told)
     cross(image, at(told.translation[None, :2], float(told.translation[2]))[0], TOOL, turned=True)
     if scene.label is not None:
-        corners = scene.label.corners_in_station(believed, scene.player.joints)
+        corners = scene.label.corners_in_station(believed, scene.told)
         outline(image, plane.camera.project(plane.cam_from_station.apply(corners)), TOOL)
-    inset = scene.eye.through(SIDE)
-    h, w = inset.shape[:2]
-    if image.shape[0] > 2 * h and image.shape[1] > 2 * w:
-        place = (
-            slice(MARGIN_PX, MARGIN_PX + h),
-            slice(image.shape[1] - w - MARGIN_PX, image.shape[1] - MARGIN_PX),
-        )
-        image[place] = inset
-        corner = (place[1].start - 1, place[0].start - 1)
-        cv2.rectangle(image, corner, (corner[0] + w + 1, corner[1] + h + 1), (255, 255, 255), 1)
-    return _barred(image, phase, _errors(scene, phase), cell.time_s)
+    return beside(image, scene.eye.through(SIDE), phase, _errors(scene, phase), cell.time_s)
 
 
 def _moved(scene: _Scene, phase: str) -> bool:
@@ -181,21 +177,20 @@ def _moved(scene: _Scene, phase: str) -> bool:
     return phase in CARRYING or scene.player.phase in CARRYING
 
 
-def _errors(scene: _Scene, phase: str) -> str:
+def _errors(scene: _Scene, phase: str) -> list[str]:
     """The true errors of this moment, in words."""
     cell = scene.cell
     thing, tool = cell.station_from(scene.episode.thing), cell.station_from_tool
     goal = scene.episode.station_from_place
     if _moved(scene, phase):
         miss = miss_of(goal, thing.translation, axis_angle(thing.rotation, 0))
-        return f"thing to goal {_mm(miss.position_m)}, {np.degrees(miss.yaw_rad):+.1f} deg"
+        return [f"thing {_mm(miss.position_m)} from goal", f"turned {np.degrees(miss.yaw_rad):+.1f} deg"]
     miss = miss_of(thing, tool.translation, axis_angle(tool.rotation, 1))
     off = scene.where.position_m - thing.translation[:2]
-    seen = f"seen {_mm(float(np.linalg.norm(off)))} off"
-    if phase == "seen":
-        return seen
-    tool_off = f"tool {_mm(miss.position_m)} off, {1000 * miss.height_m:.0f} mm up"
-    return "; ".join(words for words in (seen, tool_off, scene.player.remark) if words)
+    said = [f"seen {_mm(float(np.linalg.norm(off)))} off"]
+    if phase != "seen":
+        said += [f"tool {_mm(miss.position_m)} off", f"{1000 * miss.height_m:.0f} mm over it"]
+    return [*said, scene.player.remark] if scene.player.remark else said
 
 
 def _mm(metres: float) -> str:
@@ -207,10 +202,6 @@ def _outcome(episode: Episode) -> str:
         return "placed"
     words = episode.rung or "not seen"
     return f"{words}, no further" if not episode.failure else f"{words}; gave up"
-
-
-def _barred(image: Image, phase: str, errors: str, time_s: float) -> Image:
-    return Bar(phase, errors, time_s).under(image)
 
 
 def _rectangle(

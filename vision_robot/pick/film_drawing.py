@@ -1,14 +1,13 @@
 """Marks and words drawn into the pictures of a film."""
 
-from dataclasses import dataclass
-from typing import ClassVar
+from collections.abc import Sequence
 
 import cv2
 import numpy as np
 
 from vision_robot.types import Array, Float, Image
 
-__all__ = ["GOAL", "SEEN", "TOOL", "Bar", "cross", "outline"]
+__all__ = ["GOAL", "SEEN", "TOOL", "WIDTH", "beside", "cross", "outline"]
 
 SEEN, GOAL, TOOL = (0, 140, 255), (235, 140, 40), (70, 220, 70)
 """Blue-green-red: where the thing is believed, where it is to go, where the tool is believed."""
@@ -45,34 +44,42 @@ def _fixed(pixels: Float[Array, "n 2"]) -> Array:
     return np.rint(np.clip(pixels, -4000, 4000) * (1 << SUB)).astype(np.int32)[:, None]
 
 
-@dataclass(frozen=True)
-class Bar:
-    """The line of words under a picture: what the arm does, how far off it is, and the time."""
+WIDTH = 240
+"""Of the column beside the picture [px]."""
 
-    HEIGHT: ClassVar[int] = 44
+INK, SOFT, GROUND = (255, 255, 255), (200, 200, 200), (32, 32, 32)
+LINE_PX = 21
+MARGIN_PX = 10
 
-    phase: str
-    errors: str
-    time_s: float
 
-    def under(self, image: Image) -> Image:
-        """The picture with the bar below, both sides even."""
-        height, width = image.shape[:2]
-        framed = np.full((height + self.HEIGHT + height % 2, width + width % 2, 3), 32, dtype=np.uint8)
-        framed[:height, :width] = image
-        scale = min(1.0, width / 640)
-        self._write(framed, self.phase, (8, height + 18), 0.5 * scale, (255, 255, 255))
-        self._write(framed, self.errors, (8, height + 36), 0.42 * scale, (210, 210, 210))
-        self._write(framed, f"{self.time_s:.2f} s", (width - 70, height + 18), 0.45 * scale, (210, 210, 210))
-        x = width - 250
-        for name, colour in (("seen", SEEN), ("goal", GOAL), ("tool", TOOL)):
-            self._write(framed, name, (x, height + 18), 0.42 * scale, colour)
-            x += round(58 * scale)
-        return framed
+def beside(image: Image, inset: Image | None, phase: str, lines: Sequence[str], time_s: float) -> Image:
+    """The picture with a column at its right: a view from the side, what is done, how far off, and the time.
 
-    @staticmethod
-    def _write(
-        image: Image, text: str, place: tuple[int, int], scale: float, colour: tuple[int, int, int]
-    ) -> None:
-        plain = text.encode("ascii", "replace").decode()  # the drawing font has no other letters
-        cv2.putText(image, plain, place, cv2.FONT_HERSHEY_SIMPLEX, scale, colour, 1, cv2.LINE_AA)
+    Both sides come out even, as some codecs want it.
+    """
+    height, width = image.shape[:2]
+    framed = np.full((height + height % 2, width + width % 2 + WIDTH, 3), GROUND, dtype=np.uint8)
+    framed[:height, :width] = image
+    x, y = width + width % 2, 0
+    if inset is not None:
+        framed[: inset.shape[0], x : x + inset.shape[1]] = inset[:height, :WIDTH]
+        y = inset.shape[0]
+    x += MARGIN_PX
+    y += 8 + LINE_PX
+    _write(framed, phase, (x, y), 0.55, INK)
+    _write(framed, f"{time_s:.2f} s", (framed.shape[1] - 66, y), 0.45, SOFT)
+    for line in lines:
+        y += LINE_PX
+        _write(framed, line, (x, y), 0.43, SOFT)
+    y = height - MARGIN_PX
+    for name, colour in (("seen", SEEN), ("goal", GOAL), ("tool", TOOL)):
+        _write(framed, name, (x, y), 0.45, colour)
+        x += 58
+    return framed
+
+
+def _write(
+    image: Image, text: str, place: tuple[int, int], scale: float, colour: tuple[int, int, int]
+) -> None:
+    plain = text.encode("ascii", "replace").decode()  # the drawing font has no other letters
+    cv2.putText(image, plain, place, cv2.FONT_HERSHEY_SIMPLEX, scale, colour, 1, cv2.LINE_AA)

@@ -72,6 +72,7 @@ def _pick(
     tolerances: Tolerances,
     approach: Approach,
 ) -> Episode:
+    player.phase = "open"
     player.grip(OPENING_M, seconds=0.2)
     above = _joints(player, knowledge, seen, APPROACH_M)
     seen, looks = approach(player, seen, above)

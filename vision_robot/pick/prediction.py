@@ -11,7 +11,7 @@ from vision_robot.pick.goal import station_from_grasp, upright
 from vision_robot.pick.knowledge import STAGES, Knowledge
 from vision_robot.pick.moments import Moments
 from vision_robot.pick.rehearsal import Rehearsal
-from vision_robot.pick.sighting import Seen, sighting
+from vision_robot.pick.sighting import Seen, as_middle, sighting
 from vision_robot.types import Array, Float
 
 __all__ = ["predicted"]
@@ -33,6 +33,7 @@ def predicted(
         joints: Joint values at which the fingers close.
         rehearsal: How tracker and servos err.
     """
+    seen = as_middle(knowledge.plane, seen, height_m)
     nothing = np.zeros((len(joints), len(joints)))
     blocks = {
         "camera": knowledge.plane.known_camera.covariance,

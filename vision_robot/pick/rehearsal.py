@@ -11,6 +11,7 @@ from vision_robot.pick.episodes import Plan
 from vision_robot.pick.goal import joints_for, station_from_grasp
 from vision_robot.pick.look import Eye, look
 from vision_robot.pick.player import Player
+from vision_robot.pick.sighting import as_middle
 from vision_robot.pick.world import World
 from vision_robot.sim.cell import Cell
 from vision_robot.track.registry import tracker_named
@@ -40,8 +41,8 @@ class Rehearsal:
 def rehearsed(world: World, plan: Plan, *, places: int = 24, seed: int = 0) -> Rehearsal:
     """Try tracker and servos at `places` that are known: as one would with a jig and the encoders.
 
-    The pictures are those of the world as it is, the camera knocked or not: only where in the picture
-    the thing is counts here, and that needs no plane. Raises NothingSeen where the tracker never says
+    Only where in the picture the thing's middle is counts here, so that it does not matter whether the camera
+    was knocked. Raises NothingSeen where the tracker never says
     anything, and Unreachable where the arm reaches no place.
     """
     cell = Cell(world.design)
@@ -58,6 +59,7 @@ def rehearsed(world: World, plan: Plan, *, places: int = 24, seed: int = 0) -> R
             try:
                 said = look(cell, eye, tracker_named(plan.tracker, plan.options), name, world)
                 truly = eye.truth_of(name)
+                said = as_middle(world.truth.plane, said, world.design.items[0].size_m[-1] / 2)
                 turn = (said.yaw_rad - truly.yaw_rad + np.pi / 2) % np.pi - np.pi / 2
                 off_seen.append([*(said.centroid_px - truly.centroid_px), turn])
                 off_joints.append(_servo_error(cell, without_play, solver, name))

@@ -21,7 +21,7 @@ class Witness(Protocol):
         """The thing was seen at `where`; the arm has not moved yet."""
         ...
 
-    def unseen(self, cell: Cell, eye: Eye, episode: Episode) -> None:
+    def unseen(self, cell: Cell, eye: Eye) -> None:
         """The tracker said nothing, and nothing is done."""
         ...
 
