@@ -16,8 +16,19 @@ from .arms import (
     UnknownStructure,
     Unreachable,
 )
-from .links import BadPort, CommandRefused, LinkMismatch, NoAnswer, NoScheduler, NothingSeen, PeerFailed
+from .links import (
+    BadPort,
+    CommandRefused,
+    LinkMismatch,
+    LostSight,
+    NoAnswer,
+    NoScheduler,
+    NothingSeen,
+    PeerFailed,
+    ServoAstray,
+)
 from .pictures import (
+    BadBag,
     BadDataset,
     BadFrame,
     BadRecipe,
@@ -56,6 +67,7 @@ from .views import (
 __all__ = [
     "AmbiguousPlane",
     "BadArm",
+    "BadBag",
     "BadCameraFile",
     "BadCornerFile",
     "BadDataset",
@@ -79,6 +91,7 @@ __all__ = [
     "GripperTooNarrow",
     "InTheWay",
     "LinkMismatch",
+    "LostSight",
     "MissingLimits",
     "MissingOpenGL",
     "MissingPackage",
@@ -91,6 +104,7 @@ __all__ = [
     "NothingSeen",
     "OffPlane",
     "PeerFailed",
+    "ServoAstray",
     "TooFewPoses",
     "TooFewViews",
     "TooLate",

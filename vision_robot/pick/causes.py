@@ -4,7 +4,9 @@ from vision_robot.errors import (
     BadPath,
     GripperTooNarrow,
     InTheWay,
+    LostSight,
     NothingSeen,
+    ServoAstray,
     TooLate,
     Unreachable,
     VisionRobotError,
@@ -20,6 +22,8 @@ CAUSES: dict[type[VisionRobotError], str] = {
     GripperTooNarrow: "gripper too narrow",
     InTheWay: "in the way",
     TooLate: "gone by",
+    LostSight: "label out of sight",
+    ServoAstray: "servo astray",
 }
 """What is raised on the way -> its cause."""
 

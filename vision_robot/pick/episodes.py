@@ -19,6 +19,7 @@ from vision_robot.pick.knowledge import Knowledge
 from vision_robot.pick.look import Eye
 from vision_robot.pick.open_loop import pick_and_place, straight
 from vision_robot.pick.player import Player
+from vision_robot.pick.servo.settings import Servoing
 from vision_robot.pick.tolerances import Tolerances
 from vision_robot.pick.witness import Witness
 from vision_robot.pick.world import World
@@ -48,6 +49,8 @@ class Plan:
     """Stages replaced by the truth: what the error budget asks."""
     tries: int = 1
     """How often the thing is gone for, when fingers close on nothing."""
+    servoing: Servoing = field(default_factory=Servoing)
+    """How a loop is closed."""
 
     def __post_init__(self) -> None:
         if self.loop not in (OPEN, *LAWS):
@@ -107,7 +110,7 @@ def _tried(attempt: Attempt, episode: Episode, plan: Plan, witness: Witness | No
             if number == 1 and not episode.seen and witness is not None:
                 witness.unseen(player.cell, attempt.eye)
             break
-        loop = None if plan.loop == OPEN else _closed(plan, attempt)
+        loop = None if plan.loop == OPEN else _closed(plan, attempt, episode.seed)
         episode = pick_and_place(player, attempt.believed, target, episode, plan.tolerances, loop or straight)
         if loop is not None:
             episode = replace(episode, course=tuple(loop.looks))
@@ -122,13 +125,21 @@ def _tried(attempt: Attempt, episode: Episode, plan: Plan, witness: Witness | No
     return episode
 
 
-def _closed(plan: Plan, attempt: Attempt) -> ClosedLoop:
+def _closed(plan: Plan, attempt: Attempt, seed: int) -> ClosedLoop:
     """A closed loop by the plan's law; the label's colour is known to the tracker."""
     world, believed = attempt.player.world, attempt.believed
     watcher = tracker_named("rgb", {"color": LABEL_COLOUR})
     mount = world.design.arm
     if mount is None or mount.label is None:
         raise BadParameter("loop", plan.loop, f"{OPEN}: this arm has no label to be seen by")
-    label, true_tracking = label_of(believed.arm, mount), "tracking" in plan.true_stages
-    name = world.design.items[0].name
-    return ClosedLoop(plan.loop, attempt.eye, watcher, believed, label, true_tracking, name)
+    return ClosedLoop(
+        plan.loop,
+        attempt.eye,
+        watcher,
+        believed,
+        label_of(believed.arm, mount),
+        true_tracking=attempt.true_tracking,
+        thing=attempt.item.name,
+        how=plan.servoing,
+        seed=seed,
+    )
