@@ -106,9 +106,9 @@ def from_corner_files(
     return CalibrationInput(str(folder), corners, points, size, size_assumed=image_size is None)
 
 
-def from_pictures(paths: Sequence[str], board: Board) -> CalibrationInput:
-    """Photos, folders, patterns or a video."""
-    pictures = open_images(paths)
+def from_pictures(paths: Sequence[str], board: Board, topic: str | None = None) -> CalibrationInput:
+    """Photos, folders, patterns, a video or a ROS bag."""
+    pictures = open_images(paths, topic=topic)
     return _detected(", ".join(paths), pictures, board)
 
 

@@ -15,7 +15,6 @@ from vision_robot.pick.calibrated import rigid_fit
 from vision_robot.pick.episode import miss_of
 from vision_robot.pick.goal import joints_for, station_from_grasp, upright
 from vision_robot.pick.knowledge import STAGES, Knowledge
-from vision_robot.pick.servoing import image_step, interaction_matrix
 from vision_robot.pick.sighting import Seen, sighting
 from vision_robot.pick.world import ordinary_world
 from vision_robot.sim.outline import area_moments, outline_of
@@ -74,27 +73,6 @@ def test_joints_bring_the_tool_there_and_far_goals_are_refused():
     assert arm.chain.base_from_tool(faced).rotation[0, 1] < 0  # its back, -y, looks towards +x
     with pytest.raises(Unreachable, match="mm are missing"):
         joints_for(solver, station, station_from_grasp(np.array([2.0, 0]), 0, 0.02), near)
-
-
-def test_the_interaction_matrix_is_the_derivative():
-    """Of the image of a still point, for a camera that moves by a small twist (v, w)."""
-    point, step = np.array([0.1, -0.2, 0.8]), 1e-6
-    x, y = point[:2] / point[2]
-    L = interaction_matrix(x, y, point[2])
-    for i in range(6):
-        twist = step * np.eye(6)[i]
-        moved = SE3.exp(twist).inverse().apply(point[None])[0]
-        assert np.allclose((moved[:2] / moved[2] - [x, y]) / step, L[:, i], atol=1e-5)
-
-
-def test_an_image_step_lands_where_it_should():
-    """Newton in the image: each step leaves a hundredth of the error, whatever the lens."""
-    point, goal = np.array([0.02, -0.05, 0.1]), np.array([-0.03, 0.04])
-    wanted = PLANE.pixels(goal[None], z_m=0.1)[0]
-    for _ in range(4):
-        pixel = PLANE.pixels(point[None, :2], z_m=0.1)[0]
-        point[:2] += image_step(CAMERA, LOOKING_DOWN, point, pixel, wanted)
-    assert np.allclose(point[:2], goal, atol=1e-7)
 
 
 def test_rigid_fit_undoes_a_motion():

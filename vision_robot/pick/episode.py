@@ -41,6 +41,8 @@ class Look:
     """Of the tool over the table, as believed."""
     true_m: float = np.nan
     """How far the tool really was off the thing in the plane of {S} when it looked."""
+    sigma_m: float = np.nan
+    """What all looks up to this one leave unknown of the thing's place, one standard deviation."""
 
 
 @dataclass(frozen=True)

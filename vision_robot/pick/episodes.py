@@ -16,6 +16,7 @@ from vision_robot.pick.knowledge import Knowledge
 from vision_robot.pick.look import Eye, look
 from vision_robot.pick.open_loop import pick_and_place, straight
 from vision_robot.pick.player import Player
+from vision_robot.pick.servo.settings import Servoing
 from vision_robot.pick.sighting import sighting
 from vision_robot.pick.tolerances import Tolerances
 from vision_robot.pick.witness import Witness
@@ -45,6 +46,8 @@ class Plan:
     tolerances: Tolerances = field(default_factory=Tolerances)
     true_stages: frozenset[str] = frozenset()
     """Stages replaced by the truth: what the error budget asks."""
+    servoing: Servoing = field(default_factory=Servoing)
+    """How a loop is closed."""
 
     def __post_init__(self) -> None:
         if self.loop not in (OPEN, *LAWS):
@@ -95,7 +98,7 @@ def run_episode(
         if plan.loop == OPEN:
             episode = pick_and_place(cell, player, believed, name, where, episode, plan.tolerances, straight)
         else:
-            loop = _closed(plan, eye, believed, world)
+            loop = _closed(plan, eye, believed, world, seed)
             episode = pick_and_place(cell, player, believed, name, where, episode, plan.tolerances, loop)
             episode = replace(episode, course=tuple(loop.looks))
         if witness is not None:
@@ -103,12 +106,21 @@ def run_episode(
         return episode
 
 
-def _closed(plan: Plan, eye: Eye, believed: Knowledge, world: World) -> ClosedLoop:
+def _closed(plan: Plan, eye: Eye, believed: Knowledge, world: World, seed: int) -> ClosedLoop:
     """A closed loop by the plan's law; the label's colour is known to the tracker."""
     watcher = tracker_named("rgb", {"color": LABEL_COLOUR})
     true_tracking = "tracking" in plan.true_stages
     mount = world.design.arm
     if mount is None or mount.label is None:
         raise BadParameter("loop", plan.loop, f"{OPEN}: this arm has no label to be seen by")
-    name = world.design.items[0].name
-    return ClosedLoop(plan.loop, eye, watcher, believed, label_of(believed.arm, mount), true_tracking, name)
+    return ClosedLoop(
+        plan.loop,
+        eye,
+        watcher,
+        believed,
+        label_of(believed.arm, mount),
+        true_tracking=true_tracking,
+        thing=world.design.items[0].name,
+        how=plan.servoing,
+        seed=seed,
+    )

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vision_robot.errors import BadPath, NothingSeen, Unreachable
+from vision_robot.errors import BadPath, LostSight, NothingSeen, ServoAstray, Unreachable
 from vision_robot.geometry import SE3
 from vision_robot.pick.episode import Episode, axis_angle, miss_of
 from vision_robot.pick.goal import joints_for, station_from_grasp
@@ -57,7 +57,7 @@ def pick_and_place(
         episode = _pick(cell, player, knowledge, name, seen, episode, tolerances, approach)
         if episode.lifted:
             episode = _place(cell, player, knowledge, name, episode, tolerances)
-    except (Unreachable, BadPath, NothingSeen) as error:
+    except (Unreachable, BadPath, NothingSeen, LostSight, ServoAstray) as error:
         episode = replace(episode, failure=str(error))
     return replace(episode, seconds=cell.time_s - begun)
 
