@@ -24,6 +24,7 @@ from vision_robot.pick.world import World, ordinary_world
 from vision_robot.report.demo import DemoStory
 from vision_robot.report.pick import PickStory
 from vision_robot.report.trackers import Answer, marked
+from vision_robot.tracks import Tracks
 from vision_robot.types import Image
 from vision_robot.video import VideoWriter
 from vision_robot_cli import calibration_input
@@ -128,7 +129,6 @@ def _answer(folder: Path, names: list[str], index: int) -> Answer:
     from vision_robot.dataset import open_dataset
     from vision_robot.track.registry import tracker_named
     from vision_robot.track.session import Session
-    from vision_robot.tracks import Tracks
 
     name, data = names[index], open_dataset(folder)
     session = Session(tracker_named(name, TRACKERS[name]), plane=data.plane(0))
