@@ -57,6 +57,19 @@ def test_a_film_that_cannot_be_written_is_refused_before_any_episode(capsys):
         (["--fault", "camera-rotation=1"], "deg"),
         (["--fault", "lens=plastic"], "brown5"),
         (["--workers", "0"], "--workers"),
+        (["--fault", "latency=-1ms"], "from 0"),
+        (["--fault", "lost-sight=200%"], "to 1"),
+        (["--scene", "moon"], "conveyor"),
+        (["--object", "banana"], "pencil"),
+        (["--object", "rod:120x10"], "length x diameter"),
+        (["--object", "rod:120x10x5mm"], "length x diameter"),
+        (["--belt-speed", "60mm/s"], "no belt"),
+        (["--belt-speed", "60mm", "--scene", "conveyor"], "60mm/s"),
+        (["--tries", "0"], "tries"),
+        (["--recipe", "moon"], "single-rod"),
+        (["--recipe", "single-rod", "--object", "rod"], "--recipe"),
+        (["--arm", "nosuch.xml"], "no such file"),
+        (["--arm", "arm.urdf"], "MJCF"),
     ],
 )
 def test_bad_input_is_one_line(capsys, arguments, says):
@@ -64,3 +77,21 @@ def test_bad_input_is_one_line(capsys, arguments, says):
     captured = capsys.readouterr()
     assert says in captured.err
     assert len(captured.err.strip().splitlines()) == 1
+
+
+def test_things_are_named_with_size_and_colour():
+    from vision_robot_cli.pick_cell import colour_names, item_of
+
+    box, disc = item_of("box:40x25x15mm:green", 0), item_of("disc", 1)
+    assert (box.shape, box.size_m, box.name) == ("box", (0.04, 0.025, 0.015), "box")
+    assert disc.name == "disc 2"
+    assert colour_names([box, disc, box]) == ("green",)
+
+
+def test_what_is_too_wide_is_counted_with_its_reason(capsys):
+    assert run(["pick", "--episodes", "1", "--object", "box:90x80x20mm", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["endings"] == {"gripper too narrow": 1}
+    assert found["intervals"]["seen"][1] == 1
+    assert found["grasp_success"] == 0
+    assert "80 mm" in found["each"][0]["failure"]

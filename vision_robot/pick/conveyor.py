@@ -20,7 +20,7 @@ from vision_robot.sim.cell_model import resting
 from vision_robot.track.blobs import Blobs
 from vision_robot.types import Array, Float
 
-__all__ = ["Motion", "fitted", "pick_moving"]
+__all__ = ["Motion", "fitted", "led", "pick_moving"]
 
 EVERY = 3
 """Of the camera's frames one in so many is looked at: neighbours tell little new of what moves evenly."""
@@ -188,8 +188,8 @@ def _meeting(attempt: Attempt, target: Target, motion: Motion) -> tuple[float, F
     for wait in np.arange(0.3, 12.0, 0.1):
         start = now + float(wait)
         try:
-            first = _joints(attempt, target, _led(motion, start, 0.0), APPROACH_M, player.joints)
-            _joints(attempt, target, _led(motion, start, ends_after), APPROACH_M, first)
+            first = _joints(attempt, target, led(motion, start, 0.0), APPROACH_M, player.joints)
+            _joints(attempt, target, led(motion, start, ends_after), APPROACH_M, first)
         except Unreachable as error:
             short = error
             continue
@@ -202,7 +202,7 @@ def _meeting(attempt: Attempt, target: Target, motion: Motion) -> tuple[float, F
     raise short
 
 
-def _led(motion: Motion, start_s: float, after_s: float) -> Float[Array, "2"]:
+def led(motion: Motion, start_s: float, after_s: float) -> Float[Array, "2"]:
     """Where the tool goes: from rest up to the thing's speed, along with it, and to rest again."""
     v, t = motion.velocity_m_s, after_s
     meet = motion.at(start_s + t)
@@ -224,7 +224,7 @@ def _along(
         down = np.clip((t - CATCH_UP_S) / DOWN_S, 0, 1)
         up = np.clip((t - CATCH_UP_S - DOWN_S - CLOSE_S) / UP_S, 0, 1)
         height = APPROACH_M * (1 - _eased(float(down)) + _eased(float(up)))
-        near = _joints(attempt, target, _led(motion, start_s, float(t)), height, near)
+        near = _joints(attempt, target, led(motion, start_s, float(t)), height, near)
         rows.append(near)
     return times, np.array(rows)
 
