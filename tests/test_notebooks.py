@@ -15,7 +15,9 @@ import pytest
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
 SCRIPTS = sorted(FOLDER.glob("*.py"))
-SECONDS = 120
+SECONDS = 600
+"""For one cell on a machine that has other work; alone every notebook takes less than two minutes."""
+
 MOST_BYTES = 400_000
 
 MACHINE_PATH = re.compile(
