@@ -157,8 +157,8 @@ assert solutions.converged.all()
 found = workspace(ik, cells=101)
 x, y = np.meshgrid(found.level.across_m, found.level.up_m)
 places = np.stack([x, y, np.full_like(x, found.height_m)], axis=-1).reshape(-1, 3)
-q, reached = ik.sketch(SE3(tool_down(np.arctan2(places[:, 1], places[:, 0])), places))
-kept = np.abs(np.linalg.det(chain.jacobian(q)[:, :3, :3]))
+posture, reached = ik.sketch(SE3(tool_down(np.arctan2(places[:, 1], places[:, 0])), places))
+kept = np.abs(np.linalg.det(chain.jacobian(posture)[:, :3, :3]))
 kept = np.where(reached, kept, np.nan).reshape(x.shape)
 panels = (
     (found.level, found.level.manipulability, "y [mm]", f"from above, at {1000 * found.height_m:.0f} mm"),

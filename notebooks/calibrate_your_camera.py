@@ -23,6 +23,7 @@
 
 # %%
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -35,9 +36,10 @@ from vision_robot.calibrate import calibrate
 from vision_robot.calibrate.detect import seen_size
 from vision_robot.calibrate.judgement.advice import advice
 from vision_robot.calibrate.judgement.held_out import hold_back
+from vision_robot.calibrate.judgement.next_view import next_views
 from vision_robot.calibrate.judgement.projection_uncertainty import picture_grid, projection_sigma
 from vision_robot.errors import VisionRobotError
-from vision_robot.geometry import resampling_map
+from vision_robot.geometry import SE3, resampling_map
 from vision_robot.sim.viewpoints import board_poses
 
 plt.style.use("look.mplstyle")
@@ -98,9 +100,9 @@ for sentence in judgement.sentences:
     print(" -", sentence)
 
 # %% [markdown]
-# Two sentences count most here. *The residuals of neighbouring corners correlate*: what is left is no
-# noise. *Halves*: two halves of the photos give cameras that differ by more than their sigmas allow.
-# Something is systematically wrong, and no rms would have said so. The usual suspect is the board:
+# Two sentences count most here. *The residuals of neighbouring corners correlate*: what is left over is
+# no noise. *Views drawn anew scatter 2.4 times as far as the stated sigmas*: something is systematically
+# wrong, and no rms would have said so. The usual suspect is the board:
 
 # %%
 fits = {warp: calibrate(views, board.points, size, vr.Settings(warp=warp)) for warp in (0, 2, 3, 4, 5)}
@@ -134,9 +136,8 @@ plt.show()
 # ## 3. Where it is known, and what to photograph next
 
 # %%
-judgement = vr.judge(result, board.points)
-print(*(f" - {sentence}" for sentence in (*judgement.sentences, *advice(result))), sep="\n")
-nexts = judgement.next_views
+print(*(f" - {sentence}" for sentence in advice(result)), sep="\n")
+nexts = next_views(result, board.points, count=3)
 print(f"\nprojection known to {nexts.sigma_px:.3f} px over the picture; next:")
 for words, then in zip(nexts.words, nexts.together_px, strict=True):
     print(f" - {words} (then {then:.3f} px)")
@@ -186,7 +187,7 @@ ideal = result.camera.undistorted_pixels(edge)
 unbent = np.abs(np.polyval(np.polyfit(ideal[:, 0], ideal[:, 1], 1), ideal[:, 0]) - ideal[:, 1]).max()
 plt.show()
 print(f"a row of corners is bent by {bent:.2f} px in the photo and by {unbent:.2f} px afterwards")
-assert unbent < bent / 2
+assert unbent < bent / 10
 
 # %% [markdown]
 # Files for ROS, Kalibr, COLMAP, mrcal and MATLAB come from the same `write_camera` or from `vr convert`.
@@ -196,23 +197,30 @@ assert unbent < bent / 2
 # ## 5. What each warning means
 #
 # Now sets of corners that are spoilt on purpose. They are computed, not photographed, with 0.1 px of
-# noise; the camera is the one just found.
+# noise; the camera is much like the one just found.
 
 # %%
-camera = result.camera
+camera = replace(result.camera, distortion=(-0.25, 0.08, 6e-4, -4e-4, 0.0))
 box = (-0.025, -0.025, 0.225, 0.15)
 
 
-def taken(count, *, seed=0, noise=0.1, points=board.points, **how):
-    """Corners of so many pictures; `how` says how the board was held."""
+def taken(count, *, seed=0, noise=0.1, points=board.points, poses=None):
+    """Corners of so many pictures: of a board held well, or held at `poses`."""
     rng = np.random.default_rng([7, seed])
-    poses = board_poses(camera, box, count, seed=seed, **how)
+    poses = board_poses(camera, box, count, seed=seed) if poses is None else poses
     seen = []
     for k in range(count):
         pixels = camera.project(poses[k].apply(points))
         ids = np.flatnonzero(np.isfinite(pixels).all(axis=1))
         seen.append(vr.Corners(f"photo {k + 1}", ids, pixels[ids] + noise * rng.normal(size=(len(ids), 2))))
     return seen
+
+
+def held(tilts_deg, centres_m):
+    """Poses of the board: its tilt about x and y, and where its middle is before the camera."""
+    turn = np.column_stack([np.radians(tilts_deg), np.zeros(len(tilts_deg))])
+    rotation = SE3.from_rotvec(turn, np.zeros((len(turn), 3))).rotation
+    return SE3(rotation, np.asarray(centres_m) - rotation @ board.points.mean(axis=0))
 
 
 def asked(title, seen, settings=None):
@@ -223,7 +231,8 @@ def asked(title, seen, settings=None):
     except VisionRobotError as error:
         print(f"   refused: {error}\n")
         return None, (str(error),)
-    said = [*(f"{one.image}, corner {one.corner}: {one.reason}" for one in fit.rejected[:2]), *advice(fit)]
+    out = [f"{r.image}{'' if r.corner is None else f', corner {r.corner}'}: {r.reason}" for r in fit.rejected]
+    said = [*out[:2], *advice(fit)]
     print(
         f"   rms {fit.rms_px:.3f} px, "
         f"fx {fit.camera.fx:.1f} ± {fit.sigma.get('fx', np.nan):.1f} (truth {camera.fx:.1f})"
@@ -240,7 +249,8 @@ assert abs(good.camera.fx - camera.fx) < 4 * good.sigma["fx"]
 # whether the lens is longer or the board farther:
 
 # %%
-refused, said = asked("The board never tilted", taken(12, tilt=0.0))
+places = [(x, y, z) for x in (-0.08, 0.08) for y in (-0.06, 0.06) for z in (0.5, 0.55, 0.6)]
+refused, said = asked("The board never tilted", taken(12, poses=held(np.zeros((12, 2)), places)))
 assert refused is None
 assert "tilt" in said[0]
 refused, said = asked("Two pictures", taken(2))
@@ -250,11 +260,8 @@ assert refused is None
 # **Cautions.** The answer is given, with what it lacks:
 
 # %%
-middle = [
-    vr.Corners(v.image, v.ids, v.pixels)
-    for v in taken(40, fill=(0.2, 0.3))
-    if np.abs(v.pixels.mean(axis=0) - [320, 240]).max() < 110
-]
+tilts = [(35, 0), (-35, 0), (0, 35), (0, -35), (25, 25), (-25, 25), (25, -25), (-25, -25), (0, 0), (40, 10)]
+middle = taken(10, poses=held(tilts, np.tile([0, 0, 0.6], (10, 1))))
 fit, said = asked("The board only in the middle of the picture", middle)
 assert any("No board corner was seen" in one for one in said)
 fit, said = asked("A lens model too simple", taken(15), vr.Settings(model="pinhole"))

@@ -22,6 +22,7 @@
 
 # %%
 import tempfile
+from itertools import islice
 from pathlib import Path
 
 import cv2
@@ -35,7 +36,7 @@ from vision_robot.flow import horn_schunck_sweeps
 from vision_robot.track import tracker_named
 from vision_robot.track.session import Session
 from vision_robot.tracks import Tracks
-from vision_robot.video import Video, VideoWriter
+from vision_robot.video import Frame, Video
 from vision_robot_synth.making import synthesise
 from vision_robot_synth.recipe import read_recipe
 
@@ -51,15 +52,11 @@ folder = Path(tempfile.mkdtemp())
 
 # %%
 def made(recipe, frames, size, severity, seed):
-    """A dataset of a recipe, and its frames as a lossless video file."""
+    """A dataset of a recipe, and its frames."""
     place = folder / f"{recipe}-{severity}"
     synthesise(read_recipe(recipe).with_video(frames=frames, size=size), place, severity=severity, seed=seed)
     data = open_dataset(place)
-    path = place.with_suffix(".mkv")
-    with VideoWriter(path, data.size, data.fps) as writer:
-        for frame in data.frames():
-            writer.write(frame.image)
-    return data, Video(path)
+    return data, list(data.frames())
 
 
 data, video = made("single-rod", 60, (320, 240), 0.3, 1)
@@ -136,19 +133,8 @@ def followed(name, given, source=video, plane=plane, truth=truth):
     for step in session.run(source):
         masks.append(session.tracker.mask.copy())
         rows.append(step.final)
-    tracks = joined([*rows, session.rest()])
+    tracks = Tracks.joined([*rows, session.rest()])
     return tracking_figures(truth, tracks), session, masks, tracks
-
-
-def joined(parts):
-    """One table of many."""
-    parts = [part for part in parts if len(part)] or [Tracks.empty()]
-    columns = {
-        name: np.concatenate([getattr(part, name) for part in parts])
-        for name in Tracks.__dataclass_fields__
-        if name != "extra"
-    }
-    return Tracks(**columns)
 
 
 success, masks = {}, {}
@@ -277,19 +263,16 @@ assert max(drifting["optical-flow"], drifting["optical-flow-plain"]) < 0.6
 # it, so there is no score, only what one sees, and what the trackers say of themselves.
 
 # %%
-street = folder / "street.mkv"
-real = Video(Path(mvtbdata.__file__).parent / "images" / "traffic_sequence.mp4")
-with VideoWriter(street, (400, 320), real.fps) as writer:
-    for frame in real:
-        if frame.index >= 75:
-            break
-        writer.write(frame.image[140:460, 100:500])
+photographed = Video(Path(mvtbdata.__file__).parent / "images" / "traffic_sequence.mp4")
+street = [
+    Frame(frame.index, frame.time_s, frame.image[140:460, 100:500]) for frame in islice(photographed, 75)
+]
 at = 55
 figure, axes = plt.subplots(1, 2, figsize=(9, 3.7))
 for axis, name in zip(axes, ("background", "optical-flow"), strict=True):
     session = Session(tracker_named(name))
-    steps = list(session.run(Video(street)))
-    tracks = joined([*(step.final for step in steps), session.rest()])
+    steps = list(session.run(street))
+    tracks = Tracks.joined([*(step.final for step in steps), session.rest()])
     axis.imshow(cv2.GaussianBlur(steps[at].frame.image, (0, 0), 1)[..., ::-1])
     for one in np.unique(tracks.id):
         rows = tracks.id == one

@@ -35,7 +35,6 @@ from vision_robot.evaluate.statistics import compare_pairs
 from vision_robot.evaluate.tracking.figures import tracking_figures
 from vision_robot.track import tracker_named, tracker_names
 from vision_robot.track.session import Session, track
-from vision_robot.video import Video, VideoWriter
 from vision_robot_synth.making import synthesise
 from vision_robot_synth.recipe import read_recipe
 
@@ -138,14 +137,11 @@ except VisionRobotError as error:
 
 # %%
 def made(recipe, severity, seed, frames=40, size=(320, 240)):
-    """A dataset, and its frames as a lossless video."""
+    """A dataset, and its frames."""
     place = folder / f"{recipe}-{severity}-{seed}"
     synthesise(read_recipe(recipe).with_video(frames=frames, size=size), place, severity=severity, seed=seed)
     data = open_dataset(place)
-    with VideoWriter(place.with_suffix(".mkv"), data.size, data.fps) as writer:
-        for frame in data.frames():
-            writer.write(frame.image)
-    return data, Video(place.with_suffix(".mkv"))
+    return data, list(data.frames())
 
 
 data, video = made("many-objects", 0.2, 3)
