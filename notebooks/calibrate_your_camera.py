@@ -147,7 +147,7 @@ grid = picture_grid(result.camera, 41, 31)
 figure, axes = plt.subplots(1, 2, figsize=(10, 3.4))
 known = projection_sigma(result, grid)
 bands = axes[0].contourf(
-    grid[..., 0], grid[..., 1], known, levels=[0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8], cmap="Blues"
+    grid[..., 0], grid[..., 1], known, levels=[0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8], cmap="Blues", extend="max"
 )
 figure.colorbar(bands, ax=axes[0], label="px, one sigma", shrink=0.8)
 axes[0].plot(*np.concatenate([view.pixels for view in result.corners]).T, ",", color="C1")

@@ -200,9 +200,8 @@ shares = budgets["as it is"]
 print(f"{'':12s}{'mended alone':>14s}{'mended last':>14s}{'share':>10s}   [mm saved]")
 for stage in STAGES:
     print(f"{stage:12s}{shares.alone[stage]:14.3f}{shares.last[stage]:14.3f}{shares.share[stage]:10.3f}")
-print(
-    f"sum {sum(shares.alone.values()):22.3f}{sum(shares.last.values()):14.3f}{sum(shares.share.values()):10.3f}"
-)
+sums = (sum(part.values()) for part in (shares.alone, shares.last, shares.share))
+print("sum         {:14.3f}{:14.3f}{:10.3f}".format(*sums))
 print(f"to be explained: {shares.total - shares.floor:.3f} mm")
 assert np.isclose(sum(shares.share.values()), shares.total - shares.floor)
 assert not np.isclose(sum(shares.alone.values()), shares.total - shares.floor, rtol=0.1)

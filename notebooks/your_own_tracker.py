@@ -217,7 +217,6 @@ plt.show()
 # others. A tracker of yours joins it by its name.
 
 # %%
-
 for title in VIDEOS:
     pair = [
         np.array([scores[name, title, seed]["success_auc"] for seed in SEEDS])
