@@ -135,9 +135,9 @@ assert (counts["tool down"] == 2).mean() > 0.5
 # No goal that came from joint values is left without an answer: 4000 of 4000. And it is quick:
 
 # %%
-begun = time.perf_counter()
+begun = time.process_time()
 solutions = ik.solve(chain.base_from_tool(drawn_q))
-seconds = time.perf_counter() - begun
+seconds = time.process_time() - begun
 print(
     f"{solutions.converged.sum()} of {len(solutions)} solved, "
     f"{len(solutions) / seconds:,.0f} a second ({ik.engine.name})"

@@ -98,6 +98,7 @@ judgement = vr.judge(plain, board.points)
 print("\njudgement:")
 for sentence in judgement.sentences:
     print(" -", sentence)
+assert judgement.bootstrap.typical_ratio > 1.5
 
 # %% [markdown]
 # Two sentences count most here. *The residuals of neighbouring corners correlate*: what is left over is

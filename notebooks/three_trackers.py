@@ -46,8 +46,8 @@ folder = Path(tempfile.mkdtemp())
 # %% [markdown]
 # ## The video and its truth
 #
-# Two seconds of a red rod that wanders over a wooden table and turns, at 30 frames a second, with shadow,
-# blur and noise. `vr synth single-rod` makes the same on the command line.
+# One and a half seconds of a red rod that wanders over a wooden table and turns, at 30 frames a second,
+# with shadow, blur and noise. `vr synth single-rod` makes the same on the command line.
 
 
 # %%
@@ -59,10 +59,10 @@ def made(recipe, frames, size, severity, seed):
     return data, list(data.frames())
 
 
-data, video = made("single-rod", 60, (320, 240), 0.3, 1)
+data, video = made("single-rod", 45, (320, 240), 0.3, 1)
 frames = [frame.image for frame in video]
 truth = data.truth
-shown = (0, 20, 40, 59)
+shown = (0, 15, 30, 44)
 figure, axes = plt.subplots(1, 4, figsize=(9, 1.8))
 for axis, k in zip(axes, shown, strict=True):
     axis.imshow(cv2.GaussianBlur(frames[k], (0, 0), 1.2)[..., ::-1])
@@ -127,7 +127,7 @@ plane = data.plane(0)
 
 
 def followed(name, given, source=video, plane=plane, truth=truth):
-    """Figures of a tracker on the video, with the milliseconds for a frame and the tracks."""
+    """Figures of a tracker on the video, its session, masks and tracks."""
     session = Session(tracker_named(name, given), plane=plane)
     masks, rows = [], []
     for step in session.run(source):
@@ -165,10 +165,9 @@ plt.show()
 BEST = {"optical-flow": {}, "rgb": {"pick": tuple(click)}, "background": {}}
 runs = {name: followed(name, given) for name, given in (*options.items(), *BEST.items())}
 columns = ("success_auc", "recall", "mota", "centroid_error_px", "centroid_error_mm", "yaw_error_deg")
-print(f"{'':20s}" + "".join(f"{name.replace('_error', ''):>13s}" for name in columns) + f"{'ms p50':>9s}")
-for name, (found, session, _, _) in runs.items():
-    ms = session.latency.quantile_ms(0.5)
-    print(f"{name:20s}" + "".join(f"{found[column]:13.3f}" for column in columns) + f"{ms:9.1f}")
+print(f"{'':20s}" + "".join(f"{name.replace('_error', ''):>13s}" for name in columns))
+for name, (found, _, _, _) in runs.items():
+    print(f"{name:20s}" + "".join(f"{found[column]:13.3f}" for column in columns))
 
 figure, axes = plt.subplots(1, 3, figsize=(10, 2.6), sharey=True)
 for axis, (name, (slider, values)) in zip(axes, SLIDERS.items(), strict=True):
@@ -282,7 +281,7 @@ for axis, name in zip(axes, ("background", "optical-flow"), strict=True):
         for i in np.flatnonzero(rows & (tracks.frame == at)):
             left, top, width, height = tracks.box_px[i]
             axis.add_patch(plt.Rectangle((left, top), width, height, fill=False, edgecolor=line.get_color()))
-    axis.set_title(f"{name}: {session.objects} objects, {session.latency.quantile_ms(0.5):.0f} ms a frame")
+    axis.set_title(f"{name}: {session.objects} objects")
     axis.axis("off")
     print(name, *(f"  {tone}: {sentence}" for tone, sentence in session.remarks()), sep="\n")
     assert session.objects >= 3
