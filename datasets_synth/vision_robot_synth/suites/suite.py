@@ -21,6 +21,10 @@ class Plan:
     first_seed: int = 0
     frames: int | None = None
     size: tuple[int, int] | None = None
+    quick: bool = False
+    """Fewer scenes, methods and frames: a look in minutes."""
+    programs: Mapping[str, str] = field(default_factory=dict)
+    """Further methods of suite trackers, by name: command lines with the places {video} and {out}."""
 
     def __post_init__(self) -> None:
         for name in ("seeds", "frames"):
@@ -59,18 +63,20 @@ class Suite:
         """Scenes and methods of a plan. Raises BadParameter for names the suite lacks, listing its own."""
         for what, asked, known in (
             ("scene", plan.scenes, self.scenes),
-            ("method", plan.methods, self.methods),
+            ("method", plan.methods, (*self.methods, *plan.programs)),
         ):
             for name in asked:
                 if name not in known:
                     raise BadParameter(f"{what} of suite {self.name}", name, f"one of {', '.join(known)}")
-        return plan.scenes or self.scenes, plan.methods or self.methods
+        return plan.scenes or self.scenes, plan.methods or (*self.methods, *plan.programs)
 
 
 SUITES = {
     "calibration": "vision_robot_synth.suites.calibration:SUITE",
+    "trackers": "vision_robot_synth.suites.trackers:SUITE",
     "flow": "vision_robot_synth.suites.flow:SUITE",
     "ik": "vision_robot_synth.suites.ik:SUITE",
+    "grasp": "vision_robot_synth.suites.grasp:SUITE",
 }
 """Name -> where the suite is."""
 

@@ -1,5 +1,6 @@
 """One measurement of a sweep, and what came of it."""
 
+import errno
 import hashlib
 import importlib
 import json
@@ -12,7 +13,7 @@ from time import perf_counter, process_time
 from typing import Any
 
 import vision_robot
-from vision_robot.errors import BadParameter
+from vision_robot.errors import BadParameter, MissingOpenGL, UnwritableOutput
 from vision_robot.machine.hardware import this_machine
 
 __all__ = ["Cell", "Measured", "Outcome", "measure"]
@@ -85,7 +86,10 @@ class Outcome:
 
 
 def measure(cell: Cell, workspace: Path) -> Outcome:
-    """Do the work; an error becomes an outcome with its reason, since a method that fails is a result too."""
+    """Do the work; an error becomes an outcome with its reason, since a method that fails is a result too.
+
+    What is the machine's fault and not the method's is raised: UnwritableOutput (a full disk), MissingOpenGL.
+    """
     start, cpu = perf_counter(), process_time()
     figures: Mapping[str, float] = {}
     failure, strip = None, None
@@ -95,7 +99,11 @@ def measure(cell: Cell, workspace: Path) -> Outcome:
         found = answer if isinstance(answer, Measured) else Measured(answer)
         figures = {metric: float(value) for metric, value in found.figures.items()}
         strip = found.strip
+    except (UnwritableOutput, MissingOpenGL):
+        raise
     except Exception as error:
+        if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+            raise UnwritableOutput(workspace, error.strerror or str(error)) from error
         failure = f"{type(error).__name__}: {error}"
     taken = perf_counter() - start
     return Outcome(cell, figures, failure, taken, _peak_memory(), strip, this_machine(), process_time() - cpu)
