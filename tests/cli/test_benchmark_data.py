@@ -31,7 +31,7 @@ def test_own_sequences_give_scores_a_page_and_tables(capsys, tmp_path):
     page = (tmp_path / "flow.html").read_text()
     assert "No method is better in flow_epe_px than every other over 2 scenes" in page
     assert json.loads((tables / "scores.json").read_text()) == found
-    rows = list(csv.DictReader((tables / "scores.csv").open(newline="")))
+    rows = list(csv.DictReader((tables / "scores.csv").read_text().splitlines()))
     assert len(rows) == len(found["scores"])
     assert (tables / "summary-flow.csv").read_text().startswith("method,flow_epe_px,to vr-fast,")
     assert r"\toprule" in (tables / "summary-flow.tex").read_text()
