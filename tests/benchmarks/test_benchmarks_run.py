@@ -19,6 +19,7 @@ QUICK = [
     "next_view",
     "refinement",
     "synth_speed",
+    "trackers",
     "triangulation",
     "truth_accuracy",
     "truth_speed",
