@@ -267,7 +267,7 @@ class Background(Tracker, LooksAhead):
         if even.ndim == 3:
             frame, behind = even, self._ready.image
             if self.options.shadows:
-                objects = without_shadows(objects, frame, behind, self._noise_levels)
+                objects, behind = without_shadows(objects, frame, behind, self._noise_levels)
         if self.options.sharp:
             blobs, runs = analyse_edges(objects, frame, behind)
         else:
