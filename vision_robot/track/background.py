@@ -202,6 +202,7 @@ class Background(Tracker, LooksAhead):
         return {
             "noise_levels": self._noise_levels,
             "threshold_factor": self._factor,
+            "closing_px": self._closing,
             "min_area_px": self._sieve.min_area_px,
             **self._figures,
             "samples": self._model.count,
