@@ -60,6 +60,7 @@ def write_reports(runs: Sequence[SuiteRun], path: Path, seed: int) -> None:
             command=command,
             seed=seed,
             timing=run.suite.timing,
+            axes=run.suite.axes,
         )
         write_page(page, place)
 

@@ -86,6 +86,8 @@ METRICS = {
         _share("grasp_success", "share of rods lifted and held"),
         _share("place_success", "share of rods put down within tolerance"),
         _error("position_error_mm", "mm", "distance at closing of the gripper", 0.1),
+        _error("place_error_mm", "mm", "distance of the thing from its goal, put down", 0.1),
+        _error("pick_s", "s", "simulated time from the first move to the last", 0.2),
     )
 }
 

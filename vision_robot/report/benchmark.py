@@ -1,6 +1,6 @@
 """The page of a benchmark."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -40,11 +40,12 @@ def benchmark_page(
     command: str = "",
     seed: int | None = None,
     timing: str = "",
+    axes: Mapping[str, str] | None = None,
 ) -> Page:
     """Everything a suite found: who is ahead and how surely, what failed, where each method breaks.
 
     `metric` is the one that ranks; all others stand in the tables. `timing` says how times were measured
-    where it was not in the usual way.
+    where it was not in the usual way, `axes` what the severities of a difficulty are.
     """
     usual = without_variants(outcomes)
     found = scores(usual)
@@ -55,7 +56,7 @@ def benchmark_page(
         answer_section(usual, overall),
         failure_section(outcomes),
         scene_section(usual, scenes, metric) if len(scenes) > 1 else None,
-        _breakdowns(usual, scenes, methods, metric, threshold),
+        _breakdowns(usual, scenes, methods, metric, threshold, axes or {}),
         _ranks(usual, metric),
         _strips(outcomes, metric),
         _charts(found, scenes, methods, metric),
@@ -93,9 +94,14 @@ def _charts(
 
 
 def _breakdowns(
-    outcomes: Sequence[Outcome], scenes: Sequence[str], methods: Sequence[str], metric: str, threshold: float
+    outcomes: Sequence[Outcome],
+    scenes: Sequence[str],
+    methods: Sequence[str],
+    metric: str,
+    threshold: float,
+    axes: Mapping[str, str],
 ) -> Section | None:
-    charts, rows = [], []
+    charts, breaks = [], {}
     for dial in dials_of(scenes):
         curves = {
             name: curve
@@ -103,11 +109,11 @@ def _breakdowns(
             if (curve := measured(dial, outcomes, metric, name, threshold=threshold)) is not None
         }
         if curves:
-            charts.append(severity_chart(curves, metric, dial.name, threshold))
-            rows += [(dial.name, name, breaks) for name, (_, _, breaks) in curves.items()]
+            charts.append(severity_chart(curves, metric, dial.name, threshold, axes.get(dial.name, "")))
+            breaks[dial.name] = {name: curve[2] for name, curve in curves.items()}
     if not charts:
         return None
-    table = breakdown_table(rows, metric, threshold)
+    table = breakdown_table(breaks, methods, metric, threshold)
     return Section("Where methods break", (Figures(tuple(charts)), table))
 
 

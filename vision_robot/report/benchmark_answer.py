@@ -9,6 +9,7 @@ from vision_robot.evaluate.conclusion import needed_words, range_words, unit_wor
 from vision_robot.evaluate.metrics import metric_named
 from vision_robot.evaluate.statistics import Interval, clustered_interval
 from vision_robot.evaluate.sweep import Outcome
+from vision_robot.report.benchmark_figures import titled
 from vision_robot.report.page import Facts, Paragraph, Part, Remarks, Section, Table
 from vision_robot.report.quantity import compact, listed
 
@@ -129,5 +130,4 @@ def _mean(outcomes: Sequence[Outcome], method: str, name: str) -> Interval:
 
 
 def _titled(name: str) -> str:
-    metric = metric_named(name)
-    return f"{name} [{metric.unit}]" if metric.unit else name
+    return titled(name, metric_named(name).unit, "")

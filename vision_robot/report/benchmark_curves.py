@@ -31,7 +31,9 @@ WIDE = 30.0
 KEY_ROW_IN, KEY_TOP_IN = 0.19, 0.52
 
 
-def severity_chart(curves: Mapping[str, Curve], metric_name: str, dial: str, threshold: float) -> Figure:
+def severity_chart(
+    curves: Mapping[str, Curve], metric_name: str, dial: str, threshold: float, meaning: str = ""
+) -> Figure:
     """Means over the severity of one difficulty with their 95 % bands, and a cross where each breaks."""
     metric = metric_named(metric_name)
     rows = (len(curves) + 1) // 2
@@ -59,7 +61,8 @@ def severity_chart(curves: Mapping[str, Curve], metric_name: str, dial: str, thr
         draw(paint, height_in=height, text_pt=TEXT_PT),
         alt=f"{metric.name} of {', '.join(curves)} against the severity of {dial}",
         caption=f"{metric.name} against the severity of {dial}: means with 95 % bands over seeds, "
-        f"{metric.better} is better. A cross marks where a mean goes {passes} {threshold:g}.",
+        f"{metric.better} is better. A cross marks where a mean goes {passes} {threshold:g}."
+        + (f" Severity: {meaning}." if meaning else ""),
     )
 
 

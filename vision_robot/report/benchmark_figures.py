@@ -110,5 +110,6 @@ def rank_diagram(ranking: Ranking, metric_name: str) -> Figure:
 
 
 def titled(name: str, unit: str, better: str) -> str:
-    """A metric as an axis calls it."""
-    return f"{name}{f' [{unit}]' if unit else ''}{f', {better} is better' if better else ''}"
+    """A metric as an axis or a column calls it; many names end with their unit."""
+    shown = f" [{unit}]" if unit and not name.endswith(f"_{unit}") else ""
+    return f"{name}{shown}{f', {better} is better' if better else ''}"

@@ -1,6 +1,6 @@
 """Tables of a benchmark's page: failures, all figures, breakdown points, power, machines."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -44,13 +44,17 @@ def failure_section(outcomes: Sequence[Outcome]) -> Section:
     return Section("Failures", (Table(("method", "scenes", "runs", "reason"), rows, caption, pinned=True),))
 
 
-def breakdown_table(rows: Sequence[tuple[str, str, Breakdown]], metric: str, threshold: float) -> Table:
-    """Each (difficulty, method, where it breaks)."""
+def breakdown_table(
+    found: Mapping[str, Mapping[str, Breakdown]], methods: Sequence[str], metric: str, threshold: float
+) -> Table:
+    """Where each method breaks (rows) on each difficulty (columns)."""
     passes = "falls under" if metric_named(metric).better == "higher" else "rises over"
+    shown = [method for method in methods if any(method in row for row in found.values())]
     return Table(
-        ("difficulty", "method", "breaks at", "95 % interval", "seeds"),
-        tuple((dial, method, _severity(b.severity), _between(b), str(b.seeds)) for dial, method, b in rows),
-        f"Severity at which the mean {metric} {passes} {compact(threshold)}, between the severities tried.",
+        ("method", *found),
+        tuple((method, *(_breaking(row.get(method)) for row in found.values())) for method in shown),
+        f"Severity at which the mean {metric} {passes} {compact(threshold)}, with its 95 % interval over "
+        "seeds; never: not within the severities tried.",
         pinned=True,
     )
 
@@ -139,7 +143,9 @@ def _severity(value: float) -> str:
     return compact(value) if np.isfinite(value) else "never"
 
 
-def _between(found: Breakdown) -> str:
-    if found.low == found.high:
+def _breaking(found: Breakdown | None) -> str:
+    if found is None:
         return "–"
-    return f"{_severity(found.low)} to {_severity(found.high)}"
+    if found.low == found.high == found.severity:
+        return _severity(found.severity)
+    return f"{_severity(found.severity)} ({_severity(found.low)} to {_severity(found.high)})"

@@ -117,9 +117,10 @@ class Picture:
 
 @dataclass(frozen=True)
 class Gallery:
-    """Small pictures in rows."""
+    """Small pictures in rows; `wide` ones are twice as large, so that words in them can be read."""
 
     items: tuple[Picture, ...]
+    wide: bool = False
 
 
 @dataclass(frozen=True)

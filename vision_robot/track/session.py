@@ -1,7 +1,7 @@
 """A whole video through a tracker: frames in, rows of tracks out, one frame at a time."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sized
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,12 +13,12 @@ from vision_robot.track.admission import Admission
 from vision_robot.track.blobs import Blobs
 from vision_robot.track.follow import Follower, FollowOptions
 from vision_robot.track.on_plane import OnPlane
-from vision_robot.track.sources import Source, frames_of
+from vision_robot.track.sources import Recording, Source, frames_of, open_recording
 from vision_robot.track.still_camera import StillCamera
 from vision_robot.track.tracker import LooksAhead, Remark, Tracker
 from vision_robot.tracks import Tracks
 from vision_robot.types import Array
-from vision_robot.video import Frame, Video
+from vision_robot.video import Frame
 
 __all__ = ["Latency", "Session", "Step", "track"]
 
@@ -88,13 +88,15 @@ class Session:
     def run(self, source: Source) -> Iterator[Step]:
         """The steps of all frames. After the last one `rest` has the rows that still waited.
 
-        A recorded video is looked ahead in where the tracker can learn from that. Raises BadFrame and
+        What is recorded (a video, a dataset, whatever has a length) is looked ahead in where the tracker
+        can learn from that. Raises BadFrame and
         BadVideo for frames that cannot be used, after all steps before them.
         """
         if isinstance(source, str | Path):
-            source = Video(source)
-        if isinstance(source, Video) and isinstance(self.tracker, LooksAhead):
-            self.tracker.learn((frame.image, frame.time_s) for frame in source)
+            source = open_recording(source)
+        recorded = isinstance(source, Recording | Sized)
+        if recorded and isinstance(self.tracker, LooksAhead):
+            self.tracker.learn((frame.image, frame.time_s) for frame in frames_of(source))
         for frame in frames_of(source):
             yield self._step(frame)
 

@@ -54,6 +54,8 @@ class Suite:
     cells: Callable[[Plan], Sequence[Cell]]
     timing: str = ""
     """How its times are measured, where that is not the usual way; for the page."""
+    axes: Mapping[str, str] = field(default_factory=dict)
+    """What the severities of each dial are, in words; for the page."""
     on_data: Callable[[Path], "Suite"] | None = None
     """The suite on a folder of one's own data; each sequence is a scene and, as its number, a seed."""
 
@@ -71,9 +73,10 @@ class Suite:
 
 SUITES = {
     "calibration": "vision_robot_synth.suites.calibration:SUITE",
-    "flow": "vision_robot_synth.suites.flow:SUITE",
     "trackers": "vision_robot_synth.suites.trackers:SUITE",
+    "flow": "vision_robot_synth.suites.flow:SUITE",
     "ik": "vision_robot_synth.suites.ik:SUITE",
+    "grasp": "vision_robot_synth.suites.grasp:SUITE",
 }
 """Name -> where the suite is."""
 
