@@ -64,6 +64,7 @@ METRICS = {
         _time("latency_p50_ms", "ms", "lower", "median time for a frame"),
         _time("latency_p99_ms", "ms", "lower", "99th percentile of the time for a frame"),
         _time("fps", "1/s", "higher", "frames a second"),
+        _time("cpu_ms", "ms", "lower", "processor time for a frame, or a pair of them"),
         _time("cpu_s", "s", "lower", "processor time for the whole video"),
         _time("peak_memory_mb", "MB", "lower", "largest memory of the process"),
         _time("bandwidth_share", "", "higher", "time to read a frame from memory over the time taken"),

@@ -52,12 +52,12 @@ class Suite:
     threshold: float
     """Of `metric`, under which a method counts as broken on a dial."""
     cells: Callable[[Plan], Sequence[Cell]]
+    on_data: Callable[[Path], "Suite"] | None = None
+    """The suite on a folder of one's own data; each sequence is a scene and, as its number, a seed."""
     timing: str = ""
     """How its times are measured, where that is not the usual way; for the page."""
     axes: Mapping[str, str] = field(default_factory=dict)
     """What the severities of each dial are, in words; for the page."""
-    on_data: Callable[[Path], "Suite"] | None = None
-    """The suite on a folder of one's own data; each sequence is a scene and, as its number, a seed."""
 
     def chosen(self, plan: Plan) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Scenes and methods of a plan. Raises BadParameter for names the suite lacks, listing its own."""
