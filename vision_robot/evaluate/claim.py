@@ -1,4 +1,4 @@
-"""A claim that one method is better than some others, asked of every axis of difficulty and of all together."""
+"""A claim that one method is better than others, asked of every axis of difficulty and of all together."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -6,7 +6,13 @@ from typing import Literal
 
 import numpy as np
 
-from vision_robot.evaluate.conclusion import Comparison, compare_methods, needed_words, range_words, unit_words
+from vision_robot.evaluate.conclusion import (
+    Comparison,
+    compare_methods,
+    needed_words,
+    range_words,
+    unit_words,
+)
 from vision_robot.evaluate.statistics import holm
 from vision_robot.evaluate.sweep import Outcome
 
@@ -107,7 +113,9 @@ def _axis(scene: str) -> str:
 def _finding(outcomes: Sequence[Outcome], axis: str, metric: str, claim: Claim) -> Finding:
     names = (claim.method, *claim.rivals)
     alone = [
-        pair for rival in claim.rivals for pair in compare_methods(outcomes, metric, None, (claim.method, rival))
+        pair
+        for rival in claim.rivals
+        for pair in compare_methods(outcomes, metric, None, (claim.method, rival))
     ]
     pairs = [
         replace(pair, p=float(p)) for pair, p in zip(alone, holm([pair.p for pair in alone]), strict=True)

@@ -6,6 +6,7 @@ from importlib import import_module
 from pathlib import Path
 
 from vision_robot.errors import BadParameter
+from vision_robot.evaluate.claim import Claim
 from vision_robot.evaluate.sweep import Cell
 
 __all__ = ["SUITES", "Plan", "Suite", "suite_named"]
@@ -58,6 +59,9 @@ class Suite:
     """How its times are measured, where that is not the usual way; for the page."""
     axes: Mapping[str, str] = field(default_factory=dict)
     """What the severities of each dial are, in words; for the page."""
+
+    claims: tuple[Claim, ...] = ()
+    """Sentences of others that its runs are asked about."""
 
     def chosen(self, plan: Plan) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Scenes and methods of a plan. Raises BadParameter for names the suite lacks, listing its own."""
