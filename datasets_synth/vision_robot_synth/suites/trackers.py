@@ -189,9 +189,10 @@ CLAIMS = (
 """The text: of the three, the RGB tracker "had a better response and results"."""
 
 TIMING = (
-    "Times are of cells that ran alone, after all others: one process, one thread, frames in memory, "
-    f"on the first scene, at 640x480 px unless a size was asked for; the first {tracker_cells.WARM_UP} frames do not count. They "
-    "depend on the machine; ratios between methods of one run carry further."
+    "Times are of cells that ran alone, after all others: one process, one thread, frames in memory, on "
+    "the first scene, at 640x480 px unless a size was asked for; "
+    f"the first {tracker_cells.WARM_UP} frames do not count. They depend on the machine; ratios between "
+    "methods of one run carry further."
 )
 
 SUITE = Suite(
