@@ -52,7 +52,7 @@ SCENES: dict[str, tuple[str, float]] = {
 
 QUICK_SCENES = ("single-rod", *(scene_at(axis, severity) for axis in AXES for severity in (0.3, 1.0)))
 QUICK_PEERS = ("cv2-mog2", "cv2-knn", "cv2-cnt")
-QUICK_FRAMES = 40
+QUICK_FRAMES = 60
 
 SIZE, FRAMES, TIMED_SIZE = (320, 240), 60, (640, 480)
 TIMED_SEEDS, VARIED_SEEDS = 2, 3
