@@ -206,4 +206,5 @@ SUITE = Suite(
     timing=TIMING,
     axes=MEANINGS,
     claims=CLAIMS,
+    video_of=lambda cell: video if "recipe" in (video := cell.parameters["video"]) else None,
 )

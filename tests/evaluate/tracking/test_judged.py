@@ -1,4 +1,4 @@
-"""What an answer is judged by: labelled frames, ignored labels, and what those are shown who must be shown."""
+"""What an answer is judged by: labelled frames, ignored labels; and what is shown to who must be shown it."""
 
 from pathlib import Path
 
