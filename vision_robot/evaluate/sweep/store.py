@@ -7,6 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import vision_robot
 from vision_robot.errors import BadParameter, BadTable
 from vision_robot.evaluate.sweep.cell import Cell, Outcome
 from vision_robot.files import write_text
