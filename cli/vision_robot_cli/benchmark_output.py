@@ -11,7 +11,7 @@ from typing import Any
 from vision_robot.evaluate.answer import answer, answer_words
 from vision_robot.evaluate.baseline import regressions
 from vision_robot.evaluate.claim import Claim, claim_words, findings
-from vision_robot.evaluate.conclusion import compare_methods, sentence
+from vision_robot.evaluate.conclusion import compare_methods
 from vision_robot.evaluate.score import Score, failures, scores
 from vision_robot.evaluate.sensitivity import without_variants
 from vision_robot_cli.benchmark_run import SuiteRun
@@ -20,7 +20,7 @@ from vision_robot_cli.output import LimitMissed, note, plain
 __all__ = ["as_json", "as_text", "check_baseline", "write_reports", "write_tables"]
 
 MOST_LINES = 400
-"""Scores up to so many are printed in full, and conclusions."""
+"""Scores up to so many are printed in full."""
 
 CLAIM_METRICS = ("success_auc",)
 """Claims are asked by these too: who follows well may not be who stays silent about the rest."""
@@ -43,6 +43,7 @@ def as_json(runs: Sequence[SuiteRun]) -> dict[str, Any]:
             for run in runs
             for claim, metric, words in _claims(run)
         ],
+        "comparisons": [one for run in runs for one in _comparisons(run)],
     }
 
 
@@ -65,7 +66,8 @@ def as_text(runs: Sequence[SuiteRun]) -> str:
             lines.append(f"    {score.method:<22} {_interval(score)}")
         lines += [f"  failed: {one.scene}, {one.method}, seed {one.seed}: {one.reason}"
                   for one in failures(run.outcomes)]  # fmt: skip
-        lines += [f"  {text}" for text in _conclusions(run)]
+        overall, *by_scene = _conclusions(run) or ["No method has a figure."]
+        lines += [f"  {text}" for text in (*by_scene, overall)]  # last what is read first
         lines += [f"  {text}" for _, _, words in _claims(run) for text in words]
         lines += ["  all metrics: --json, --tables DIR, --report FILE"] if short else []
     return "\n".join(lines)
@@ -94,8 +96,6 @@ def write_reports(runs: Sequence[SuiteRun], path: Path, seed: int) -> None:
 
 def write_tables(runs: Sequence[SuiteRun], folder: Path) -> None:
     """All scores, and each suite's summary, for a paper or another program."""
-    from vision_robot.evaluate.answer import answer
-    from vision_robot.evaluate.sensitivity import without_variants
     from vision_robot.files import write_text
     from vision_robot.report.benchmark_answer import summary_table
     from vision_robot.report.benchmark_files import scores_csv, table_csv, table_latex
@@ -133,14 +133,30 @@ def _all_scores(runs: Sequence[SuiteRun]) -> list[Score]:
 
 
 def _conclusions(run: SuiteRun) -> list[str]:
-    """All pairs of methods on every scene by the suite's metric; where they are too many, the standings."""
-    usual = without_variants(run.outcomes)
-    scenes = dict.fromkeys(outcome.cell.scene for outcome in usual)
-    methods = {outcome.cell.method for outcome in usual}
-    if len(scenes) * len(methods) * (len(methods) - 1) / 2 > MOST_LINES:
-        found = answer(usual, run.suite.metric)
-        return [text for _, text in answer_words(found)] if found else []
-    return [sentence(pair) for scene in scenes for pair in compare_methods(usual, run.suite.metric, scene)]
+    """What may be said over all scenes, then scene by scene."""
+    usual, metric = without_variants(run.outcomes), run.suite.metric
+    scenes = list(dict.fromkeys(outcome.cell.scene for outcome in usual))
+    asked = [None, *(scenes if len(scenes) > 1 else ())]
+    found = [answer(usual, metric, scene) for scene in asked]
+    return [" ".join(text for _, text in answer_words(one)) for one in found if one is not None]
+
+
+def _comparisons(run: SuiteRun) -> list[dict[str, Any]]:
+    """All pairs over all scenes, in figures."""
+    pairs = compare_methods(without_variants(run.outcomes), run.suite.metric)
+    keys = ("scene", "better", "worse", "p", "verdict", "seeds_needed")
+    return [
+        {
+            "suite": run.suite.name,
+            "metric": run.suite.metric,
+            **{key: getattr(one, key) for key in keys},
+            "difference": one.difference.value,
+            "low": one.difference.low,
+            "high": one.difference.high,
+            "seeds": one.difference.n,
+        }
+        for one in pairs
+    ]
 
 
 def _claims(run: SuiteRun) -> list[tuple[Claim, str, list[str]]]:

@@ -202,7 +202,7 @@ SUITE = Suite(
     "hota",
     0.5,
     cells,
-    on_data,
+    on_data=on_data,
     timing=TIMING,
     axes=MEANINGS,
     claims=CLAIMS,
