@@ -50,7 +50,9 @@ class Finding:
         ahead = [one for one in self.pairs if one.verdict == "better" and one.better == method]
         if behind:
             return "fails"
-        if len(ahead) == len(self.pairs) and not self.failed:
+        if self.failed:
+            return "open"
+        if len(ahead) == len(self.pairs):
             return "holds"
         settled = ahead + [one for one in self.pairs if one.verdict == "equivalent"]
         return "equal" if len(settled) == len(self.pairs) else "open"

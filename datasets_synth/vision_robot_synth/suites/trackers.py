@@ -131,20 +131,20 @@ def _is_quick(name: str, plan: Plan) -> bool:
 
 
 def _scored(videos: Mapping[tuple[str, int], Video], methods: Sequence[str], plan: Plan) -> Iterator[Cell]:
-    places, shown = list(videos), set[str]()
+    places = list(videos)
+    # One film strip a scene and method is enough to look at.
+    filmed = set({scene: (scene, seed) for scene, seed in reversed(places)}.values())
     for first in range(0, len(places), TOGETHER):
         for method in methods:
             for scene, seed in places[first : first + TOGETHER]:
                 video = videos[scene, seed]
-                # One film strip a scene and method is enough to look at.
-                told = {"video": video, "strip": True} if scene not in shown else {"video": video}
+                told = {"video": video, "strip": True} if (scene, seed) in filmed else {"video": video}
                 if method in plan.programs:
                     yield _cell(
                         scene, method, seed, "command_figures", {"command": plan.programs[method], **told}
                     )
                 else:
                     yield _cell(scene, method, seed, "tracker_figures", {"method": method, **told})
-        shown |= {scene for scene, _ in places[first : first + TOGETHER]}
 
 
 def _variants(videos: Mapping[tuple[str, int], Video], methods: Sequence[str], plan: Plan) -> Iterator[Cell]:
