@@ -17,7 +17,6 @@ release = version = vision_robot.__version__
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
-    "sphinx.ext.napoleon",
     "extension.docstrings",
     "extension.generated",
     "extension.mathml",
@@ -28,6 +27,7 @@ html_theme = "furo"
 html_title = "Vision Robot"
 html_math_renderer = "mathml"
 html_copy_source = False
+smartquotes = False  # two dashes are an option's
 html_show_sourcelink = False
 html_static_path = ["style"]
 html_css_files = ["manual.css"]
@@ -39,7 +39,7 @@ suppress_warnings = ["misc.highlighting_failure"]
 
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
-autodoc_default_options = {"members": True, "show-inheritance": False}
+autodoc_default_options = {"members": True}
 autodoc_class_signature = "mixed"
 python_use_unqualified_type_names = True
 python_maximum_signature_line_length = 90

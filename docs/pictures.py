@@ -24,8 +24,8 @@ from vision_robot.video import Video
 PICTURES = Path(__file__).parent / "pictures"
 WIDTH = 1160
 QUALITY = 72
-CLOSING = 100
-"""Frame of `cell` in which the gripper closes."""
+ABOVE = 50
+"""Frame of `cell` in which the gripper is over the pencil."""
 NARROW = "width: 680px; margin: 20px"
 
 
@@ -81,7 +81,7 @@ def calibration_report(folder: Path) -> Path:
 
 def calibration(folder: Path) -> np.ndarray:
     """Its top."""
-    return photographed(calibration_report(folder), 1000)
+    return photographed(calibration_report(folder), 780)
 
 
 def projection_uncertainty(folder: Path) -> np.ndarray:
@@ -105,20 +105,20 @@ def seen(folder: Path) -> np.ndarray:
     made(folder, "rod/video.mp4", "synth single-rod -o rod --frames 60 --mp4")
     words = "track video rod/video.mp4 --tracker rgb --color red --plane rod/dataset.json --overlay seen.mp4"
     frames = [frame.image for frame in Video(made(folder, "seen.mp4", words))]
-    return frames[-8]
+    return frames[24]
 
 
 def cell(folder: Path) -> np.ndarray:
-    """The gripper at a pencil, as the camera of the cell sees it."""
+    """The gripper over a pencil, as the camera of the cell sees it."""
     words = "synth gripper-approach -o approach --frames 110 --severity 1"
     frames = sorted((made(folder, "approach", words) / "frames").iterdir())
-    return read_image(frames[CLOSING])
+    return read_image(frames[ABOVE])
 
 
 def benchmark(folder: Path) -> np.ndarray:
     """The page of a benchmark."""
     words = "benchmark calibration --seeds 4 --workers 2 -o bench --report benchmark.html"
-    return photographed(made(folder, "benchmark.html", words), 1000)
+    return photographed(made(folder, "benchmark.html", words), 780)
 
 
 MAKERS: dict[str, Callable[[Path], np.ndarray]] = {

@@ -30,6 +30,5 @@ def process(_app: Any, _what: str, _name: str, _obj: Any, _options: Any, lines: 
 
 def setup(app: Any) -> dict[str, bool]:
     """Called by Sphinx."""
-    # Before napoleon, which writes reStructuredText of its own.
-    app.connect("autodoc-process-docstring", process, priority=400)
+    app.connect("autodoc-process-docstring", process)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
