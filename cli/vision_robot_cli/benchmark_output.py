@@ -1,5 +1,6 @@
 """How `vr benchmark` shows its scores: text, JSON, pages, and against an older run."""
 
+import json
 import shlex
 import sys
 from collections.abc import Sequence
@@ -11,9 +12,9 @@ from vision_robot.evaluate.baseline import regressions
 from vision_robot.evaluate.conclusion import compare_methods, sentence
 from vision_robot.evaluate.score import Score, failures, scores
 from vision_robot_cli.benchmark_run import SuiteRun
-from vision_robot_cli.output import LimitMissed, note
+from vision_robot_cli.output import LimitMissed, note, plain
 
-__all__ = ["as_json", "as_text", "check_baseline", "write_reports"]
+__all__ = ["as_json", "as_text", "check_baseline", "write_reports", "write_tables"]
 
 
 def as_json(runs: Sequence[SuiteRun]) -> dict[str, Any]:
@@ -58,8 +59,31 @@ def write_reports(runs: Sequence[SuiteRun], path: Path, seed: int) -> None:
             threshold=run.suite.threshold,
             command=command,
             seed=seed,
+            timing=run.suite.timing,
+            axes=run.suite.axes,
         )
         write_page(page, place)
+
+
+def write_tables(runs: Sequence[SuiteRun], folder: Path) -> None:
+    """All scores, and each suite's summary, for a paper or another program."""
+    from vision_robot.evaluate.answer import answer
+    from vision_robot.evaluate.sensitivity import without_variants
+    from vision_robot.files import write_text
+    from vision_robot.report.benchmark_answer import summary_table
+    from vision_robot.report.benchmark_files import scores_csv, table_csv, table_latex
+
+    write_text(folder / "scores.csv", scores_csv(_all_scores(runs)))
+    content = {"schema": "vr.benchmark/1", **plain(as_json(runs))}
+    write_text(folder / "scores.json", json.dumps(content, indent=1, allow_nan=False) + "\n")
+    for run in runs:
+        usual = without_variants(run.outcomes)
+        found = answer(usual, run.suite.metric)
+        if found is not None:
+            table = summary_table(usual, found)
+            name = f"summary-{run.suite.name}"
+            write_text(folder / f"{name}.csv", table_csv(table))
+            write_text(folder / f"{name}.tex", table_latex(table, label=f"tab:{run.suite.name}"))
 
 
 def check_baseline(runs: Sequence[SuiteRun], before: Sequence[Score]) -> None:

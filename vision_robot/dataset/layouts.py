@@ -7,7 +7,7 @@ from vision_robot.dataset.dataset import Dataset
 from vision_robot.dataset.layout import Layout
 from vision_robot.errors import BadDataset, BadParameter
 
-__all__ = ["LAYOUTS", "open_dataset"]
+__all__ = ["LAYOUTS", "open_dataset", "recognised"]
 
 LAYOUTS: dict[str, str] = {
     "vr": "vision_robot.dataset.generated:LAYOUT",
@@ -32,11 +32,16 @@ def open_dataset(path: Path | str, layout: str | None = None) -> Dataset:
         raise BadDataset(path, "there is no such folder")
     if layout:
         return _layout(layout).read(folder)
-    for name in LAYOUTS:
-        if _layout(name).recognises(folder):
-            return _layout(name).read(folder)
+    name = recognised(folder)
+    if name is not None:
+        return _layout(name).read(folder)
     marks = ", ".join(f"{_layout(name).mark} ({name})" for name in LAYOUTS)
     raise BadDataset(path, f"none of these is in it: {marks}")
+
+
+def recognised(folder: Path) -> str | None:
+    """The layout a folder has, by the file that marks it."""
+    return next((name for name in LAYOUTS if _layout(name).recognises(folder)), None)
 
 
 def _layout(name: str) -> Layout:

@@ -6,7 +6,17 @@ as attributes so that a caller can act on it without parsing text.
 """
 
 from .arms import BadArm, BadGoal, BadPath, MissingLimits, UnknownStructure, Unreachable
-from .links import BadPort, CommandRefused, LinkMismatch, NoAnswer, NoScheduler, NothingSeen, PeerFailed
+from .links import (
+    BadPort,
+    CommandRefused,
+    LinkMismatch,
+    LostSight,
+    NoAnswer,
+    NoScheduler,
+    NothingSeen,
+    PeerFailed,
+    ServoAstray,
+)
 from .pictures import (
     BadBag,
     BadDataset,
@@ -69,6 +79,7 @@ __all__ = [
     "DegenerateViews",
     "EdgeOnPlane",
     "LinkMismatch",
+    "LostSight",
     "MissingLimits",
     "MissingOpenGL",
     "MissingPackage",
@@ -81,6 +92,7 @@ __all__ = [
     "NothingSeen",
     "OffPlane",
     "PeerFailed",
+    "ServoAstray",
     "TooFewPoses",
     "TooFewViews",
     "TooLittleMotion",

@@ -25,7 +25,7 @@ class PairedTest:
     p: float
     """Chance of a difference at least as large if the methods were interchangeable."""
     equivalent: bool
-    """Whether the 90 % interval of the difference lies inside the zone of practical equivalence."""
+    """Whether the 1 - 2 level interval of the difference lies inside the zone of practical equivalence."""
 
 
 def compare_pairs(
@@ -34,11 +34,12 @@ def compare_pairs(
     clusters: Array,
     *,
     zone: float = 0.0,
+    level: float = 0.05,
     seed: int = 0,
 ) -> PairedTest:
     """Permutation test on the signs of the clusters' mean differences (Fisher 1935), two-sided.
 
-    `zone` is the largest difference that matters to nobody; two one-sided tests at 5 % (Schuirmann
+    `zone` is the largest difference that matters to nobody; two one-sided tests at `level` (Schuirmann
     1987) show equivalence. Pairs with a NaN on either side are left out.
     """
     if not len(ours) == len(theirs) == len(clusters):
@@ -51,7 +52,7 @@ def compare_pairs(
         off = np.bincount(place, weights=(ours - theirs)[known]) / np.bincount(place)
     order = np.arange(k)
     difference = clustered_interval(off, order, seed=seed)
-    inner = clustered_interval(off, order, confidence=0.90, seed=seed)
+    inner = clustered_interval(off, order, confidence=1 - 2 * level, seed=seed)
     equivalent = bool(-zone < inner.low and inner.high < zone)
     return PairedTest(difference, _sign_flip_p(off, seed), equivalent)
 
