@@ -7,6 +7,10 @@ MARKED = re.compile(r"(?<!`)`([^`]+)`(?!`)")
 SPECIAL = re.compile(r"([*|])|(\w)_(?=\W|$)")
 LITERAL = re.compile(r"(``.+?``|:\w+:`[^`]+`)")
 
+SECTIONS = ("Args:", "Returns:", "Raises:")
+STEP = 4
+"""Blanks before an argument's name; what goes on below it is farther in."""
+
 
 def plain(line: str) -> str:
     """A line in which `names` are literal and nothing else means anything."""
@@ -19,13 +23,26 @@ def _escaped(match: re.Match[str]) -> str:
 
 
 def process(_app: Any, _what: str, _name: str, _obj: Any, _options: Any, lines: list[str]) -> None:
-    """Sphinx hands over the lines of a docstring to be changed in place; indented blocks stay as they are."""
-    block = False
+    """Sphinx hands over the lines of a docstring to be changed in place; literal blocks stay as they are."""
+    block = section = False
     for i, line in enumerate(lines):
-        if block and (not line.strip() or line.startswith(" ")):
+        inside = not line.strip() or line.startswith(" ")
+        if block and inside:
             continue
         block = line.rstrip().endswith("::")
-        lines[i] = plain(line)
+        section = line.strip() in SECTIONS or (section and inside)
+        lines[i] = _item(line) if section else plain(line)
+
+
+def _item(line: str) -> str:
+    """A line of a list of arguments: a heading, `name: text`, or the text going on."""
+    if line.strip() in SECTIONS:
+        return f"{line.strip()}\n"
+    depth = len(line) - len(line.lstrip())
+    if depth > STEP or not line.strip():
+        return f"  {plain(line.strip())}".rstrip()
+    name, colon, text = line.strip().partition(":")
+    return f"* ``{name}``{colon}{plain(text)}"
 
 
 def setup(app: Any) -> dict[str, bool]:
