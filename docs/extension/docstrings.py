@@ -25,19 +25,24 @@ def _escaped(match: re.Match[str]) -> str:
 def process(_app: Any, _what: str, _name: str, _obj: Any, _options: Any, lines: list[str]) -> None:
     """Sphinx hands over the lines of a docstring to be changed in place; literal blocks stay as they are."""
     block = section = False
-    for i, line in enumerate(lines):
+    changed: list[str] = []
+    for line in lines:
         inside = not line.strip() or line.startswith(" ")
         if block and inside:
+            changed.append(line)
             continue
         block = line.rstrip().endswith("::")
-        section = line.strip() in SECTIONS or (section and inside)
-        lines[i] = _item(line) if section else plain(line)
+        if line.strip() in SECTIONS:
+            section = True
+            changed += [line.strip(), ""]
+            continue
+        section = section and inside
+        changed.append(_item(line) if section else plain(line))
+    lines[:] = changed
 
 
 def _item(line: str) -> str:
-    """A line of a list of arguments: a heading, `name: text`, or the text going on."""
-    if line.strip() in SECTIONS:
-        return f"{line.strip()}\n"
+    """A line of a list of arguments: `name: text`, or the text going on."""
     depth = len(line) - len(line.lstrip())
     if depth > STEP or not line.strip():
         return f"  {plain(line.strip())}".rstrip()
