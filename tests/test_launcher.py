@@ -108,7 +108,7 @@ def clone(tmp_path):
 def test_it_installs_the_pins_then_the_project_and_becomes_the_command(clone):
     code, out, err = clone.run("calibrate", "my photos/*.jpg", "--json")
     assert code == 7
-    assert out == "<vision_robot_cli.main>\n<calibrate>\n<my photos/*.jpg>\n<--json>\n"
+    assert out == "<vision_robot_cli>\n<calibrate>\n<my photos/*.jpg>\n<--json>\n"
     venv, pins, project = clone.calls
     assert venv.startswith("venv")
     assert f"-r {clone.root}/requirements.txt" in pins

@@ -1,6 +1,7 @@
 """Vision Robot: from camera to grasp, with numbers for how good every step is."""
 
 import importlib
+import os
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -17,6 +18,12 @@ if TYPE_CHECKING:
     from vision_robot.images import open_images as open_images
 
 __version__ = "0.1.0"
+
+MOST_PIXELS = 250_000_000
+"""Of a picture or a frame; a few bytes can claim thousands of millions."""
+
+# OpenCV asks for this once, while it is loaded, and whatever loads it here comes later.
+os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(MOST_PIXELS))
 
 # The public face: each name is imported when it is first used, so that `import vision_robot` costs nothing.
 PUBLIC = {

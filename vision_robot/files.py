@@ -54,8 +54,8 @@ def check_place(path: Path | str) -> None:
 
 
 def write_text(path: Path | str, text: str) -> None:
-    """Write text as UTF-8, whole or not at all."""
-    write_bytes(path, text.encode())
+    """Write text as UTF-8, whole or not at all; bytes of file names that are no text come as escapes."""
+    write_bytes(path, text.encode(errors="backslashreplace"))
 
 
 def write_bytes(path: Path | str, data: bytes) -> None:

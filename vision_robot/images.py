@@ -11,14 +11,20 @@ import numpy as np
 
 from vision_robot.bag import Bag, is_bag
 from vision_robot.errors import BadParameter, NoImages, UnreadableImage
+from vision_robot.reading import LARGEST_PICTURE, Refusal, read_bytes
 from vision_robot.types import Image
+from vision_robot.video import open_video
 
-__all__ = ["IMAGE_SUFFIXES", "VIDEO_SUFFIXES", "ImageSource", "open_images", "read_image"]
+__all__ = ["IMAGE_SUFFIXES", "VIDEO_SUFFIXES", "ImageSource", "decoded", "open_images", "read_image"]
 
 IMAGE_SUFFIXES = (
     ".bmp", ".jp2", ".jpeg", ".jpg", ".pbm", ".pgm", ".png", ".pnm", ".ppm", ".tif", ".tiff", ".webp",
 )  # fmt: skip
 VIDEO_SUFFIXES = (".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".webm")
+
+DENSEST = 1032
+"""Bytes that deflate packs into one, and more than the pixels that a byte of a JPEG can stand for. Files that
+claim more are cut off, but decoders make room for the whole before they find out."""
 
 VIDEO_PICTURES = 60
 """So many pictures are taken from a video unless `every` says otherwise."""
@@ -87,21 +93,24 @@ def read_image(path: Path | str) -> Image:
     is about, and all pictures of one camera keep one size. Samples of 16 bits are scaled to 8, from the
     least of 10, 12, 14 or 16 bits that holds them; transparency is dropped. Raises UnreadableImage.
     """
-    try:
-        data = Path(path).read_bytes()  # OpenCV itself does not open every path that Python does
-    except OSError as error:
-        raise UnreadableImage(path, error.strerror or str(error)) from error
+    return _eight_bits(path, decoded(path, UnreadableImage))
+
+
+def decoded(path: Path | str, refuse: Refusal) -> np.ndarray:
+    """The samples in a file as they are. `refuse` makes the error for a file that is no picture."""
+    # OpenCV itself does not open every path that Python does.
+    data = read_bytes(path, refuse, LARGEST_PICTURE)
     if not data:
-        raise UnreadableImage(path, "the file is empty")
+        raise refuse(path, "the file is empty")
     if _is_cut_off(data):
-        raise UnreadableImage(path, "the file ends too early")
+        raise refuse(path, "the file ends too early")
     try:
         image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
-    except cv2.error as error:
-        raise UnreadableImage(path, _reason(error)) from error
+    except (cv2.error, MemoryError) as error:
+        raise refuse(path, _reason(error)) from error
     if image is None:
-        raise UnreadableImage(path, "not a known picture format, or damaged")
-    return _eight_bits(path, image)
+        raise refuse(path, "not a known picture format, or damaged")
+    return image
 
 
 def _expanded(path: Path | str) -> list[Path]:
@@ -132,15 +141,32 @@ def _reader(file: Path) -> Callable[[], Image]:
 def _is_cut_off(data: bytes) -> bool:
     """Whether a JPEG or PNG lacks its end mark: decoders then fill the rest with grey and say nothing."""
     if data.startswith(b"\x89PNG\r\n\x1a\n"):
-        return b"IEND" not in data
+        return _png_is_cut_off(data)
     if not data.startswith(b"\xff\xd8\xff"):
         return False
     at = 2
     while at + 4 <= len(data) and data[at] == 0xFF:
         marker, length = data[at + 1], int.from_bytes(data[at + 2 : at + 4])
+        if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):  # a frame's size
+            height, width = int.from_bytes(data[at + 5 : at + 7]), int.from_bytes(data[at + 7 : at + 9])
+            if width * height > DENSEST * len(data):
+                return True
         if marker == 0xDA:  # the scan: from here on, a bare end mark is one
             return data.find(b"\xff\xd9", at) < 0
         at += 1 if marker == 0xFF else 2 + length
+    return True
+
+
+def _png_is_cut_off(data: bytes) -> bool:
+    width, height = int.from_bytes(data[16:20]), int.from_bytes(data[20:24])
+    if width * height > 8 * DENSEST * len(data):
+        return True
+    at = 8
+    while at + 12 <= len(data):
+        length, kind = int.from_bytes(data[at : at + 4]), data[at + 4 : at + 8]
+        at += 12 + length
+        if kind == b"IEND":
+            return at > len(data)
     return True
 
 
@@ -149,7 +175,11 @@ def _eight_bits(path: Path | str, image: np.ndarray) -> Image:
         if image.dtype != np.uint16:
             raise UnreadableImage(path, f"samples are {image.dtype}, not 8 or 16 bits")
         bits = next(bits for bits in (10, 12, 14, 16) if int(image.max()) < 2**bits)
-        image = (image.astype(np.float32) * (255 / (2**bits - 1)) + 0.5).astype(np.uint8)
+        grey = (np.arange(2**bits, dtype=np.float32) * (255 / (2**bits - 1)) + 0.5).astype(np.uint8)
+        eight = np.empty(image.shape, dtype=np.uint8)
+        for row, samples in enumerate(image):  # indices are eight times as large as the picture
+            eight[row] = grey[samples]
+        image = eight
     if image.ndim == 3 and image.shape[2] == 1:
         return image[..., 0]
     return np.ascontiguousarray(image[..., :3]) if image.ndim == 3 else image
@@ -157,7 +187,7 @@ def _eight_bits(path: Path | str, image: np.ndarray) -> Image:
 
 def _video_readers(file: Path, name: str, every: int | None) -> dict[str, Callable[[], Image]]:
     """Chosen frames of a video."""
-    video = cv2.VideoCapture(str(file))
+    video = open_video(file, UnreadableImage)
 
     def frames() -> Iterator[Callable[[], Image | None]]:
         while video.grab():
@@ -198,7 +228,18 @@ def _chosen(
         score = 0.0 if every else _sharpness(frame)
         if place not in kept or score > kept[place][0]:
             kept[place] = (score, index, cv2.imencode(".png", frame)[1].tobytes())
+        if every is None and len(kept) > 2 * VIDEO_PICTURES:  # longer than its header says
+            stretch *= 2
+            kept = _merged(kept)
     return {f"{name}#{index:06d}": _decoder(data) for _, index, data in kept.values()}
+
+
+def _merged(kept: Mapping[int, tuple[float, int, bytes]]) -> dict[int, tuple[float, int, bytes]]:
+    """The sharper frame of every two stretches."""
+    fewer: dict[int, tuple[float, int, bytes]] = {}
+    for place, found in kept.items():
+        fewer[place // 2] = max(fewer.get(place // 2, found), found)
+    return fewer
 
 
 def _decoder(data: bytes) -> Callable[[], Image]:
@@ -216,7 +257,7 @@ def _sharpness(frame: Image) -> float:
     return float((cv2.Laplacian(grey, cv2.CV_32F) ** 2).mean())
 
 
-def _reason(error: cv2.error) -> str:
+def _reason(error: Exception) -> str:
     """The telling part of OpenCV's message."""
     text = str(getattr(error, "err", "") or error)
     return "it is too large" if "PIXELS" in text or "pixels" in text else " ".join(text.split())[:120]

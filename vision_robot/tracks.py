@@ -1,7 +1,6 @@
 """Where objects were, frame by frame: one table, the same for a tracker's answer and for the truth."""
 
-import csv
-import io
+from array import array
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -10,6 +9,7 @@ import numpy as np
 
 from vision_robot.errors import BadTable
 from vision_robot.files import write_text
+from vision_robot.reading import LARGEST_TABLE, csv_rows, number, read_text
 from vision_robot.types import Array, Float, Int
 
 __all__ = ["COLUMNS", "Tracks"]
@@ -19,6 +19,8 @@ COLUMNS = (
     "major_px", "minor_px", "yaw_deg", "x_mm", "y_mm", "vx_mm_s", "vy_mm_s",
 )  # fmt: skip
 """Header of the CSV; outsiders rely on it. Further columns may follow, and are kept."""
+LARGEST_WHOLE = 2.0**53
+"""From here on, whole numbers run together."""
 
 
 @dataclass(frozen=True)
@@ -112,33 +114,29 @@ class Tracks:
     @classmethod
     def read(cls, path: Path | str) -> "Tracks":
         """Read such a CSV. Raises BadTable, naming line and column, for anything else."""
-        try:
-            text = Path(path).read_text(encoding="utf-8-sig")
-        except (OSError, UnicodeDecodeError) as error:
-            raise BadTable(path, getattr(error, "strerror", None) or "it is not text") from error
-        return cls.from_csv(text, path)
+        return cls.from_csv(read_text(path, BadTable, LARGEST_TABLE), path)
 
     @classmethod
     def from_csv(cls, text: str, source: object = "tracks") -> "Tracks":
         """The table in a CSV text; `source` is named in errors."""
-        rows = list(csv.reader(io.StringIO(text)))
-        header = [name.strip() for name in rows[0]] if rows else []
+        rows = csv_rows(text, source, BadTable)
+        header = [name.strip() for name in next(rows, (0, []))[1]]
         missing = [name for name in ("frame", "id", "u_px", "v_px") if name not in header]
         if missing:
             raise BadTable(source, f"its first line lacks the column(s) {', '.join(missing)}")
-        body = [row for row in rows[1:] if row]
-        numbers = np.full((len(body), len(header)), np.nan)
-        for i, row in enumerate(body):
+        cells, lines = array("d"), []
+        for line, row in rows:
             if len(row) != len(header):
-                raise BadTable(source, f"line {i + 2} has {len(row)} fields, the first line {len(header)}")
-            for j, cell in enumerate(row):
-                numbers[i, j] = _number(cell, source, i + 2, header[j])
+                raise BadTable(source, f"line {line} has {len(row)} fields, the first line {len(header)}")
+            cells.extend(_number(cell, source, line, name) for cell, name in zip(row, header, strict=True))
+            lines.append(line)
+        numbers = np.array(cells).reshape(len(lines), len(header))
         table = dict(zip(header, numbers.T, strict=True))
-        known = {name: table.get(name, np.full(len(body), np.nan)) for name in COLUMNS}
+        known = {name: table.get(name, np.full(len(lines), np.nan)) for name in COLUMNS}
         for name in ("frame", "id"):
-            whole = np.isfinite(known[name]) & (known[name] == np.rint(known[name]))
+            whole = (np.abs(known[name]) < LARGEST_WHOLE) & (known[name] == np.rint(known[name]))
             if not whole.all():
-                line = int(np.flatnonzero(~whole)[0]) + 2
+                line = lines[int(np.flatnonzero(~whole)[0])]
                 raise BadTable(source, f"line {line}: {name} must be a whole number")
         order = np.lexsort((known["id"], known["frame"]))
         c = {name: column[order] for name, column in known.items()}
@@ -167,10 +165,9 @@ def _number(cell: str, source: object, line: int, column: str) -> float:
     text = cell.strip()
     if not text:
         return np.nan
-    try:
-        value = float(text)
-    except ValueError:
-        raise BadTable(source, f"line {line}: {column} is {cell!r}, not a number") from None
-    if not np.isfinite(value):
+    value = number(text)
+    if value is None:
+        raise BadTable(source, f"line {line}: {column} is {cell!r}, not a number")
+    if np.isnan(value):
         raise BadTable(source, f"line {line}: {column} is {cell!r}; leave it empty where it is unknown")
     return value

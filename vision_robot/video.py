@@ -8,11 +8,13 @@ from typing import Self
 import cv2
 import numpy as np
 
+from vision_robot import MOST_PIXELS
 from vision_robot.errors import BadParameter, BadVideo
 from vision_robot.files import atomic_path
+from vision_robot.reading import Refusal
 from vision_robot.types import Image
 
-__all__ = ["Frame", "Video", "VideoWriter"]
+__all__ = ["Frame", "Video", "VideoWriter", "open_video"]
 
 CODECS = {".avi": "MJPG", ".mkv": "FFV1", ".mp4": "mp4v", ".webm": "VP90"}
 """What each container is written with; FFV1 in .mkv is lossless."""
@@ -38,8 +40,6 @@ class Video:
 
     def __init__(self, path: Path | str):
         self.path = Path(path)
-        if not self.path.is_file():
-            raise BadVideo(path, "there is no such file")
         capture = self._open()
         try:
             readable, first = capture.read()
@@ -77,7 +77,19 @@ class Video:
             capture.release()
 
     def _open(self) -> cv2.VideoCapture:
-        return cv2.VideoCapture(str(self.path))
+        return open_video(self.path, BadVideo)
+
+
+def open_video(path: Path, refuse: Refusal) -> cv2.VideoCapture:
+    """OpenCV's reader of a plain file whose frames are not beyond all measure."""
+    if not path.is_file():
+        raise refuse(path, "it is not a plain file" if path.exists() else "there is no such file")
+    capture = cv2.VideoCapture(str(path))
+    width, height = (capture.get(side) for side in (cv2.CAP_PROP_FRAME_WIDTH, cv2.CAP_PROP_FRAME_HEIGHT))
+    if width * height > MOST_PIXELS:
+        capture.release()
+        raise refuse(path, f"its frames are {width:.0f}x{height:.0f} px, more than {MOST_PIXELS} in all")
+    return capture
 
 
 class VideoWriter:

@@ -1,7 +1,5 @@
 """Goals in a file: any pose file, or places on the table with the yaw of a tool that points down."""
 
-import csv
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,6 +9,7 @@ import numpy as np
 from vision_robot.arm.workspace import tool_down
 from vision_robot.errors import BadPoseFile
 from vision_robot.geometry import SE3
+from vision_robot.reading import csv_rows, json_tree, number, read_text
 
 __all__ = ["Goals", "read_goals"]
 
@@ -62,21 +61,18 @@ def read_goals(path: Path | str) -> Goals:
 
 def _rows(path: Path) -> list[tuple[str, dict[str, object]]]:
     """Where each row stands and its cells by lower-case name; empty where the file is no such table."""
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-        if text.lstrip()[:1] in ("[", "{"):
-            tree = json.loads(text)
-            listed = tree if isinstance(tree, list) else [tree]
-            return [(f"goal {k}", _lower(row)) for k, row in enumerate(listed, start=1)]
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError, RecursionError, AttributeError):
-        return []
-    lines = [
-        (k, line) for k, line in enumerate(text.splitlines(), start=1) if line.strip()[:1] not in ("", "#")
-    ]
-    table = list(csv.reader(line for _, line in lines))
+    text = read_text(path, BadPoseFile)
+    if text.lstrip()[:1] in ("[", "{"):
+        tree = json_tree(text, path, BadPoseFile)
+        listed = tree if isinstance(tree, list) else [tree]
+        if not all(isinstance(row, dict) for row in listed):
+            return []
+        return [(f"goal {k}", _lower(row)) for k, row in enumerate(listed, start=1)]
+    # Remarks are emptied, not taken out, so that the lines keep their numbers.
+    lines = ["" if line.lstrip().startswith("#") else line for line in text.splitlines()]
+    table = [row for row in csv_rows("\n".join(lines), path, BadPoseFile) if any(map(str.strip, row[1]))]
     return [
-        (f"line {k}", _lower(dict(zip(table[0], cells, strict=False))))
-        for (k, _), cells in zip(lines[1:], table[1:], strict=True)
+        (f"line {line}", _lower(dict(zip(table[0][1], cells, strict=False)))) for line, cells in table[1:]
     ]
 
 
@@ -99,10 +95,7 @@ def _places(path: Path, rows: list[tuple[str, dict[str, object]]]) -> Goals | No
 
 def _number(path: Path, where: str, row: Mapping[str, object], name: str) -> float:
     value = row.get(name)
-    try:
-        number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        number = np.nan
-    if not np.isfinite(number):
+    found = number(str(value))
+    if found is None or np.isnan(found):
         raise BadPoseFile(path, f"{where}: {name} is {str(value)[:40]!r}, not a finite number")
-    return number
+    return found

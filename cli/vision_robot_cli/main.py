@@ -7,6 +7,7 @@
 import importlib
 import os
 import sys
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import Annotated, Any, ClassVar
 
@@ -109,7 +110,26 @@ def root(
 
 def main() -> None:
     """Entry point of the `vr` script."""
+    if DEBUG not in sys.argv:
+        speak_alone()
     sys.exit(run(sys.argv[1:]))
+
+
+def speak_alone() -> None:
+    """Leave stderr to us: libraries below print of damaged pictures what our one line says better."""
+    warnings.simplefilter("ignore")
+    for stream, number in ((sys.stdout, 1), (sys.stderr, 2)):
+        if stream is None:  # closed by the caller; what is opened next would take its number
+            os.dup2(os.open(os.devnull, os.O_RDWR), number)
+    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115, PTH123
+    if sys.stderr is not None:
+        ours = os.dup(2)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        sys.stderr = open(ours, "w", encoding=sys.stderr.encoding, errors="backslashreplace", buffering=1)  # noqa: SIM115, PTH123
+    else:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115, PTH123
+    # Names of files need not be text.
+    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -119,8 +139,8 @@ def run(arguments: Sequence[str]) -> int:
         ended = typer.main.get_command(app).main(args=words, prog_name="vr", standalone_mode=False)
         sys.stdout.flush()
     except BrokenPipeError:
-        # Whoever read our output has enough of it. Python would complain once more at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        # Whoever read our output has enough of it.
+        leave_stdout()
         return 1
     except (KeyboardInterrupt, typer.Abort):
         ended = 130
@@ -129,10 +149,19 @@ def run(arguments: Sequence[str]) -> int:
             raise
         code, line = verdict(error)
         print(f"vr: {' '.join(line.split())}", file=sys.stderr)
+        leave_stdout()
         return code
     if ended == 130:  # Typer's own answer to an interrupt inside a command
         print("vr: interrupted", file=sys.stderr)
     return ended if isinstance(ended, int) else 0
+
+
+def leave_stdout() -> None:
+    """Bring out what was printed; where nobody takes it, let it go: Python would complain at its end."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def without_debug(arguments: Sequence[str]) -> tuple[list[str], bool]:
@@ -157,6 +186,8 @@ def verdict(error: Exception) -> tuple[int, str]:
         return 2, f"error: {error}"
     if isinstance(error, VisionRobotError):
         return 1, f"error: {error}"
+    if isinstance(error, OSError) and error.strerror:  # a disk is full, a folder is gone
+        return 1, f"error: {error.strerror}{f': {error.filename}' if error.filename else ''}"
     return 1, f"error: {type(error).__name__}: {error} (run again with {DEBUG} for the traceback)"
 
 

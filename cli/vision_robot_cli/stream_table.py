@@ -1,6 +1,5 @@
 """What `vr ik stream` sends, and the sending."""
 
-import csv
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from vision_robot.arm.export_c import fingerprint
 from vision_robot.arm.stream import JointTable, Link, PoseTable, SerialPort, play
 from vision_robot.errors import BadTable
 from vision_robot.files import check_place
+from vision_robot.reading import csv_rows, number, read_text
 from vision_robot_cli.goal_file import read_goals
 from vision_robot_cli.output import progress
 
@@ -46,19 +46,20 @@ def longest_step_s(table: JointTable | PoseTable) -> float:
 
 
 def _times(path: Path) -> np.ndarray | None:
-    """The column time_s of a CSV; None where there is none."""
-    lines = [
-        line
-        for line in path.read_text(encoding="utf-8-sig").splitlines()
-        if line.strip()[:1] not in ("", "#")
-    ]
-    table = list(csv.DictReader(lines, skipinitialspace=True))
-    if not table or "time_s" not in table[0]:
+    """The column time_s of a CSV; None where there is none, as in JSON."""
+    text = read_text(path, BadTable)
+    if text.lstrip()[:1] in ("[", "{"):
         return None
-    try:
-        return np.array([float(row["time_s"]) for row in table])
-    except (TypeError, ValueError):
-        raise BadTable(path, "its column time_s must hold a number in every row") from None
+    lines = [line for line in text.splitlines() if line.strip()[:1] not in ("", "#")]
+    rows = [row for _, row in csv_rows("\n".join(lines), path, BadTable)]
+    names = [name.strip() for name in rows[0]] if rows else []
+    if "time_s" not in names:
+        return None
+    column = names.index("time_s")
+    times = [number(row[column]) if len(row) > column else None for row in rows[1:]]
+    if None in times:
+        raise BadTable(path, "its column time_s must hold a number in every row")
+    return np.array(times, dtype=float)
 
 
 def played(

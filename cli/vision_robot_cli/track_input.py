@@ -1,6 +1,5 @@
 """What `vr track` is given: a tracker with its own options, a plane, limits of the following."""
 
-import tomllib
 from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
@@ -8,6 +7,7 @@ from typing import Any
 
 from vision_robot.errors import BadParameter
 from vision_robot.geometry.work_plane import WorkPlane
+from vision_robot.reading import LARGEST_OPTIONS, read_text, toml_tree
 from vision_robot.track import Tracker, tracker_named
 from vision_robot.track.registry import tracker_class, tracker_names
 
@@ -75,12 +75,13 @@ def _one(word: str, tracker: str, known: Sequence[str]) -> dict[str, str]:
     return {option: value.strip()}
 
 
+def _bad_config(path: object, why: str) -> BadParameter:
+    return BadParameter("--config", str(path), f"a readable TOML file ({why})")
+
+
 def _from_file(path: Path, tracker: str) -> dict[str, Any]:
     """The table named like the tracker in a TOML file; tables of other trackers are left alone."""
-    try:
-        tables = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise BadParameter("--config", str(path), f"a readable TOML file ({error})") from error
+    tables = toml_tree(read_text(path, _bad_config, LARGEST_OPTIONS), path, _bad_config)
     unknown = [
         name for name, table in tables.items() if name not in tracker_names() or not isinstance(table, dict)
     ]

@@ -59,7 +59,7 @@ def test_binary_files_and_missing_folders_are_refused(tmp_path):
         read_corner_folder(tmp_path, 3)
     with pytest.raises(BadParameter, match="a folder"):
         read_corner_folder(tmp_path / "nowhere", 3)
-    with pytest.raises(BadCornerFile, match="No such file"):
+    with pytest.raises(BadCornerFile, match="no such file"):
         read_model_points(tmp_path / "nowhere.txt")
 
 

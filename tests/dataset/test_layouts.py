@@ -84,5 +84,5 @@ def test_no_json_and_no_frames(tmp_path):
     with pytest.raises(BadDataset, match=r"frame 1 is missing: there is no 01.png"):
         list(open_dataset(folder).frames())
     (folder / "dataset.json").write_text("{")
-    with pytest.raises(BadDataset, match="no JSON"):
+    with pytest.raises(BadDataset, match="line 1"):
         open_dataset(folder)

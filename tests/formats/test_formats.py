@@ -18,8 +18,8 @@ from vision_robot.formats import (
     write_camera,
 )
 from vision_robot.formats.loss import fitted
-from vision_robot.formats.source import MAX_BYTES
 from vision_robot.geometry import LENSES, Camera
+from vision_robot.reading import LARGEST_TREE
 
 BROWN = Camera(640, 480, 532.8, 533.1, 341.25, 233.7, 0.0, "brown5", (-0.28, 0.03, 1.2e-5, -3e-4, 0.12))
 SKEWED = Camera(640, 480, 1064, 1065.8, 257.3899, 294.171, -0.8118)
@@ -165,13 +165,13 @@ class TestRefusals:
     def test_missing_folder_empty_and_large(self, tmp_path):
         empty, large = tmp_path / "empty.yml", tmp_path / "large.yml"
         empty.write_text(" \n")
-        large.write_bytes(b"a" * (MAX_BYTES + 1))
+        large.write_bytes(b"a" * (LARGEST_TREE + 1))
         for path, why in [
             (tmp_path / "none.yml", "there is no such file"),
-            (tmp_path, "it is not a file"),
+            (tmp_path, "it is not a plain file"),
             (empty, "it is empty"),
             (large, "it is larger than 16 MB"),
-            (Path("/dev/zero"), "it is not a file"),
+            (Path("/dev/zero"), "it is not a plain file"),
         ]:
             with pytest.raises(BadCameraFile, match=why):
                 read_camera(path)

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from vision_robot.arm.model_size import refuse_oversized
 from vision_robot.errors import BadArm
 from vision_robot.types import Array, Bool, Float
 
@@ -22,9 +23,10 @@ def free_of_collision(
     from vision_robot.sim.gl import load_mujoco
 
     mujoco = load_mujoco(rendering=False)
+    refuse_oversized(Path(path))
     try:
         model = mujoco.MjModel.from_xml_path(str(path))
-    except ValueError as error:
+    except (ValueError, RuntimeError, MemoryError) as error:
         raise BadArm(path, " ".join(str(error).split())) from error
     data = mujoco.MjData(model)
     known = {model.joint(j).name for j in range(model.njnt)}

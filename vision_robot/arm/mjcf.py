@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vision_robot.arm.model import Arm, one_of
+from vision_robot.arm.model_size import refuse_oversized
 from vision_robot.errors import BadArm
 from vision_robot.geometry import SE3, SerialChain
 from vision_robot.types import Array, Float
@@ -34,10 +35,12 @@ def compiled(path: Path) -> "MjModel":
     """MuJoCo's compiled model; without its shapes where only those cannot be had. Raises BadArm."""
     from vision_robot.sim.gl import load_mujoco
 
+    refuse_oversized(path)
     mujoco = load_mujoco(rendering=False)
+    # Not only ValueError: what MuJoCo's compiler does not foresee comes as RuntimeError.
     try:
         return mujoco.MjModel.from_xml_path(str(path))
-    except ValueError as error:
+    except (ValueError, RuntimeError, MemoryError) as error:
         why = " ".join(str(error).split())
     try:
         # Meshes often stay behind when a model is passed on; kinematics need none.
@@ -46,7 +49,7 @@ def compiled(path: Path) -> "MjModel":
             spec.delete(shape)
         spec.compiler.boundmass = spec.compiler.boundinertia = 1e-3
         return spec.compile()
-    except ValueError:
+    except (ValueError, RuntimeError, MemoryError):
         raise BadArm(path, why) from None
 
 
@@ -59,6 +62,9 @@ def chain_of_model(
     base: str | None = None,
 ) -> Arm:
     """The serial chain from base to tool in a compiled model, `path` being named in errors."""
+    placed = (model.body_pos, model.body_quat, model.jnt_pos, model.jnt_axis, model.site_pos, model.site_quat)
+    if not all(np.isfinite(numbers).all() for numbers in (*placed, model.qpos0, model.jnt_range)):
+        raise BadArm(path, "a place, an axis or a limit in it is not a finite number")
     sites = [model.site(i).name for i in range(model.nsite)]
     bodies = [model.body(i).name for i in range(model.nbody)]
     if tool is None or tool not in bodies:

@@ -15,6 +15,8 @@ __all__ = ["ARMS", "Arm", "read_arm"]
 ARMS = {"column": "column_arm.xml"}
 """Arms that come with the library, by name; files in `vision_robot/arm/models`."""
 
+FARTHEST_M = 1e6
+
 Limits = Mapping[str, tuple[float, float]]
 
 
@@ -89,6 +91,9 @@ def _with_limits(arm: Arm, given: Limits, path: Path) -> Arm:
     unknown = [name for name in given if name not in chain.joint_names]
     if unknown:
         raise BadParameter("joint with a limit", unknown[0], f"one of {', '.join(chain.joint_names)}")
+    places = (chain.link_from_joint, chain.last_from_wrist, chain.wrist_from_tool)
+    if not all(np.abs(place.translation).max(initial=0) < FARTHEST_M for place in places):
+        raise BadArm(path, f"a part of it is more than {FARTHEST_M:g} m away from the next")
     limits, assumed = np.array(chain.limits), []
     for i, name in enumerate(chain.joint_names):
         if name in given:

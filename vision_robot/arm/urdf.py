@@ -1,7 +1,6 @@
 """URDF: links and joints alone, so that missing meshes and unknown tags are no obstacle."""
 
 from pathlib import Path
-from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 import numpy as np
@@ -9,6 +8,7 @@ import numpy as np
 from vision_robot.arm.model import Arm, one_of
 from vision_robot.errors import BadArm
 from vision_robot.geometry import SE3, SerialChain
+from vision_robot.reading import LARGEST_TREE, number, read_bytes, xml_root
 from vision_robot.types import Array, Float
 
 __all__ = ["is_urdf", "read_urdf"]
@@ -22,12 +22,7 @@ def is_urdf(path: Path) -> bool:
 
 
 def _root(path: Path) -> Element:
-    try:
-        return ElementTree.fromstring(path.read_bytes())
-    except ElementTree.ParseError as error:
-        raise BadArm(path, f"it is no XML ({error})") from error
-    except OSError as error:
-        raise BadArm(path, error.strerror or str(error)) from error
+    return xml_root(read_bytes(path, BadArm, LARGEST_TREE), path, BadArm)
 
 
 def read_urdf(
@@ -149,10 +144,7 @@ def _numbers(
     text = None if element is None else element.get(attribute)
     if text is None:
         return np.array(default, dtype=float)
-    try:
-        numbers = np.array([float(word) for word in text.split()])
-    except ValueError:
-        numbers = np.full(len(default), np.nan)
+    numbers = np.array([number(word) for word in text.split()], dtype=float)  # None becomes NaN
     if len(numbers) != len(default) or not np.isfinite(numbers).all():
         raise BadArm(path, f"{attribute} of joint {joint!r} is {text!r}: it must be {len(default)} number(s)")
     return numbers

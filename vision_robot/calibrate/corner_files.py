@@ -12,11 +12,10 @@ import numpy as np
 
 from vision_robot.calibrate.corners import Corners
 from vision_robot.errors import BadCornerFile, BadParameter
+from vision_robot.reading import number, read_text
 from vision_robot.types import Array, Float
 
 __all__ = ["read_corner_folder", "read_model_points", "size_holding"]
-
-LARGEST_BYTES = 64_000_000
 
 
 def read_model_points(path: Path | str) -> Float[Array, "n 3"]:
@@ -74,23 +73,14 @@ USUAL_SIZES = (
 
 
 def _read_pairs(path: Path) -> Float[Array, "n 2"]:
-    try:
-        if path.stat().st_size > LARGEST_BYTES:
-            raise BadCornerFile(path, f"it is larger than {LARGEST_BYTES // 1_000_000} MB")
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise BadCornerFile(path, "it is not text") from error
-    except OSError as error:
-        raise BadCornerFile(path, error.strerror or str(error)) from error
+    text = read_text(path, BadCornerFile)
     numbers = []
     for line_number, line in enumerate(text.splitlines(), start=1):
         for word in line.split("#")[0].replace(",", " ").split():
-            try:
-                numbers.append(float(word))
-            except ValueError as error:
-                raise BadCornerFile(
-                    path, f"line {line_number} holds {word[:40]!r} where a number belongs"
-                ) from error
+            value = number(word)
+            if value is None:
+                raise BadCornerFile(path, f"line {line_number} holds {word[:40]!r} where a number belongs")
+            numbers.append(value)
     values = np.array(numbers)
     if not len(values) or len(values) % 2:
         raise BadCornerFile(path, f"it holds {len(values)} numbers where x, y pairs belong")

@@ -13,6 +13,8 @@ import numpy as np
 
 from vision_robot.errors import BadParameter, BadTable
 from vision_robot.files import write_bytes
+from vision_robot.images import decoded
+from vision_robot.reading import LARGEST_PICTURE, read_bytes
 from vision_robot.types import Array, Bool, Float
 
 __all__ = ["FlowField", "encode_flow", "read_flow", "write_flow"]
@@ -73,12 +75,9 @@ def write_flow(field: FlowField, path: Path | str) -> None:
 
 def read_flow(path: Path | str) -> FlowField:
     """Read a .png or a .flo. Raises BadTable for a file that holds no flow."""
-    place = Path(path)
-    try:
-        data = place.read_bytes()
-    except OSError as error:
-        raise BadTable(path, error.strerror or str(error)) from error
-    return _from_flo(data, path) if place.suffix.lower() == ".flo" else _from_png(data, path)
+    if Path(path).suffix.lower() == ".flo":
+        return _from_flo(read_bytes(path, BadTable, LARGEST_PICTURE), path)
+    return _from_png(decoded(path, BadTable), path)
 
 
 def _from_flo(data: bytes, path: Path | str) -> FlowField:
@@ -95,10 +94,7 @@ def _from_flo(data: bytes, path: Path | str) -> FlowField:
     return FlowField(flow, np.zeros(unknown.shape, dtype=bool))
 
 
-def _from_png(data: bytes, path: Path | str) -> FlowField:
-    raw = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED) if data else None
-    if raw is None or b"IEND" not in data[-16:]:
-        raise BadTable(path, "it is damaged, or no PNG of flow")
+def _from_png(raw: np.ndarray, path: Path | str) -> FlowField:
     if raw.dtype != np.uint16 or raw.ndim != 3 or raw.shape[2] != 3:
         raise BadTable(path, f"flow is 3 x 16 bits a pixel, this has {raw.dtype} {raw.shape}")
     flow = (raw[..., :0:-1].astype(np.float32) - OFFSET) / SCALE

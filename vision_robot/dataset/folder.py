@@ -26,9 +26,9 @@ def numbered_pictures(folder: Path, layout: str) -> list[Path]:
     if not numbered:
         raise BadDataset(folder, "it holds no numbered pictures")
     first, last = min(numbered), max(numbered)
-    missing = [number for number in range(first, last + 1) if number not in numbered]
-    if missing:
-        raise BadDataset(folder, f"frame {missing[0]} of {first} to {last} is missing")
+    if last - first >= len(numbered):
+        missing = next(number for number in range(first, last + 1) if number not in numbered)
+        raise BadDataset(folder, f"frame {missing} of {first} to {last} is missing")
     return [numbered[number] for number in range(first, last + 1)]
 
 

@@ -4,7 +4,6 @@ dataset.json says everything; frames and the truth lie where it says (patterns c
 a file of camera and work plane too.
 """
 
-import json
 import re
 from pathlib import Path
 from typing import Any
@@ -14,15 +13,21 @@ import numpy as np
 from vision_robot.dataset.dataset import Dataset, DatasetObject, even_times
 from vision_robot.dataset.folder import picture_size
 from vision_robot.dataset.layout import Layout
-from vision_robot.dataset.numbers import read_words
 from vision_robot.errors import BadCameraFile, BadDataset
 from vision_robot.formats import read_camera
+from vision_robot.formats.intrinsics import MAX_SIDE
+from vision_robot.formats.parse import parse_json
+from vision_robot.formats.pose import read_pose
+from vision_robot.formats.source import open_source
 from vision_robot.geometry import SE3
+from vision_robot.reading import LARGEST_TABLE, csv_rows, json_tree, read_text
 from vision_robot.tracks import Tracks
 
 __all__ = ["LAYOUT", "SCHEMA"]
 
 SCHEMA = "vr.dataset/1"
+MOST_FRAMES = 1_000_000
+"""As many as a recipe may ask for."""
 PATTERN = re.compile(r"[\w./-]*\{:0\dd\}\.\w+")
 
 
@@ -37,23 +42,22 @@ def read(folder: Path) -> Dataset:
     Raises BadDataset, naming the key, for a dataset.json that is damaged or tells what is not there.
     """
     path = folder / "dataset.json"
-    try:
-        described = json.loads(read_words(path))
-    except ValueError as error:
-        raise BadDataset(path, f"it is no JSON ({error})") from error
+    described = json_tree(read_text(path, BadDataset), path, BadDataset)
     if not isinstance(described, dict) or described.get("schema") != SCHEMA:
         raise BadDataset(path, f"its schema is not {SCHEMA}")
     try:
         return _views(folder, described) if "views" in described else _video(folder, described)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         what = f"key {error} is missing" if isinstance(error, KeyError) else str(error)
         raise BadDataset(path, f"it is not as this tool writes it: {what}") from error
 
 
 def _video(folder: Path, described: dict[str, Any]) -> Dataset:
-    count, fps = int(described["frames"]["count"]), float(described["fps"])
+    count, fps = _count(described["frames"]["count"], MOST_FRAMES), float(described["fps"])
+    if not 0 < fps < 1e6:
+        raise ValueError(f"fps is {fps}")
     truth = described["truth"]
-    width, height = map(int, described["size"])
+    width, height = (_count(side, MAX_SIDE) for side in described["size"])
     source = [folder / name for name in _numbered(described["frames"]["pattern"], range(count))]
     return Dataset(
         name=str(described["recipe"]),
@@ -63,19 +67,19 @@ def _video(folder: Path, described: dict[str, Any]) -> Dataset:
         fps=fps,
         source=source,
         times_s=even_times(count, fps),
-        truth=Tracks.read(folder / truth["tracks"]),
+        truth=Tracks.read(_inside(folder, truth["tracks"])),
         camera=_camera(folder),
         cam_from_station=_poses(folder, described, count),
         objects=tuple(_object(one) for one in described["objects"]),
         flow_files=_files(folder, truth.get("flow"), count),
-        flow_step=int((truth.get("flow") or {}).get("step", 1)),
+        flow_step=_count((truth.get("flow") or {}).get("step", 1), count),
         mask_files=_files(folder, truth.get("masks"), count),
         described=described,
     )
 
 
 def _views(folder: Path, described: dict[str, Any]) -> Dataset:
-    source = [folder / view["image"] for view in described["views"]]
+    source = [_inside(folder, view["image"]) for view in described["views"]]
     if not source:
         raise BadDataset(folder, "it has no views")
     return Dataset(
@@ -101,12 +105,15 @@ def _camera(folder: Path) -> Any:
 
 def _poses(folder: Path, described: dict[str, Any], count: int) -> SE3 | None:
     if "camera_motion" in described:
-        table = np.loadtxt(folder / described["camera_motion"], delimiter=",", skiprows=1, ndmin=2)
-        if table.shape != (count, 7):
-            raise BadDataset(folder, f"{described['camera_motion']} has not 7 columns and {count} rows")
+        path = _inside(folder, described["camera_motion"])
+        rows = [row for _, row in csv_rows(read_text(path, BadDataset, LARGEST_TABLE), path, BadDataset)]
+        table = np.array(rows[1:], dtype=float)
+        if table.shape != (count, 7) or not np.isfinite(table).all():
+            raise BadDataset(path, f"it has not {count} rows of 7 numbers")
         return SE3.from_rotvec(table[:, 1:4], table[:, 4:7])
-    pose = described.get("cam_from_station")
-    return pose and SE3.from_rotvec(np.array(pose["rotvec_rad"]), np.array(pose["translation_m"]))
+    if described.get("cam_from_station") is None:
+        return None
+    return read_pose(parse_json(open_source(folder / "dataset.json")).get("cam_from_station"))
 
 
 def _object(one: dict[str, Any]) -> DatasetObject:
@@ -119,6 +126,20 @@ def _files(folder: Path, where: dict[str, Any] | None, count: int) -> dict[int, 
         return {}
     frames = range(count - int(where.get("step", 0)))
     return {i: folder / name for i, name in zip(frames, _numbered(where["pattern"], frames), strict=True)}
+
+
+def _count(value: Any, most: int) -> int:
+    """A whole number from 1 to `most`."""
+    if not (isinstance(value, int) and 1 <= value <= most):
+        raise ValueError(f"{value!r} is no whole number from 1 to {most}")
+    return value
+
+
+def _inside(folder: Path, name: str) -> Path:
+    """A file of the dataset; a name that leads out of the folder is refused."""
+    if Path(name).is_absolute() or ".." in Path(name).parts:
+        raise ValueError(f"{name!r} leads out of the folder")
+    return folder / name
 
 
 def _numbered(pattern: str, numbers: range) -> list[str]:

@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 
 from vision_robot.errors import BadParameter, BadTable
+from vision_robot.images import decoded
 from vision_robot.types import Array, Bool, Int, Integer
 
 __all__ = ["decode_runs", "encode_ids", "encode_runs", "read_ids"]
@@ -30,15 +31,9 @@ def encode_ids(ids: Integer[Array, "height width"]) -> bytes:
 
 def read_ids(path: Path | str) -> Int[Array, "height width"]:
     """The ids in such a PNG. Raises BadTable for another file."""
-    try:
-        data = Path(path).read_bytes()
-    except OSError as error:
-        raise BadTable(path, error.strerror or str(error)) from error
-    ids = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED) if data else None
-    if ids is None or b"IEND" not in data[-16:]:
-        raise BadTable(path, "it is damaged, or no picture")
-    if ids.ndim != 2:
-        raise BadTable(path, "a picture of ids is grey, this has colours")
+    ids = decoded(path, BadTable)
+    if ids.ndim != 2 or ids.dtype.kind != "u":
+        raise BadTable(path, f"a picture of ids is grey, this is {ids.dtype} {ids.shape}")
     return ids.astype(np.int64)
 
 

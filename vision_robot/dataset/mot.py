@@ -14,8 +14,9 @@ from vision_robot.dataset.box_tracks import tracks_of_boxes
 from vision_robot.dataset.dataset import Dataset, even_times
 from vision_robot.dataset.folder import numbered_pictures, picture_size
 from vision_robot.dataset.layout import Layout
-from vision_robot.dataset.numbers import read_numbers, read_words
+from vision_robot.dataset.numbers import read_numbers
 from vision_robot.errors import BadDataset, BadTable
+from vision_robot.reading import read_text
 from vision_robot.tracks import Tracks
 from vision_robot.types import Array, Float
 from vision_robot.video import Video
@@ -122,7 +123,7 @@ def _sequence(path: Path) -> dict[str, str]:
         return {}
     parser = configparser.ConfigParser(interpolation=None)
     try:
-        parser.read_string(read_words(path))
+        parser.read_string(read_text(path, BadDataset))
         return dict(parser["Sequence"])
     except (configparser.Error, KeyError) as error:
         raise BadDataset(path, "a seqinfo.ini starts with [Sequence] and holds name=value lines") from error

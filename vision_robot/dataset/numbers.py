@@ -6,17 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from vision_robot.errors import BadTable
+from vision_robot.reading import LARGEST_TABLE, number, read_text
 from vision_robot.types import Array, Float
 
-__all__ = ["read_numbers", "read_words"]
-
-
-def read_words(path: Path) -> str:
-    """The text of a file. Raises BadTable where there is none."""
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise BadTable(path, getattr(error, "strerror", None) or "it is not text") from error
+__all__ = ["read_numbers"]
 
 
 def read_numbers(path: Path, least: int, most: int) -> tuple[Float[Array, "rows most"], list[int]]:
@@ -26,18 +19,18 @@ def read_numbers(path: Path, least: int, most: int) -> tuple[Float[Array, "rows 
     `most`, and for anything that is no number.
     """
     rows, lines = [], []
-    for number, line in enumerate(read_words(path).splitlines(), start=1):
+    for at, line in enumerate(read_text(path, BadTable, LARGEST_TABLE).splitlines(), start=1):
         words = [word for word in re.split(r"[,;\s]+", line.strip()) if word]
         if not words:
             continue
         if not least <= len(words) <= most:
-            raise BadTable(path, f"line {number} has {len(words)} numbers, not {least} to {most}")
+            raise BadTable(path, f"line {at} has {len(words)} numbers, not {least} to {most}")
         row = np.full(most, np.nan)
         for i, word in enumerate(words):
-            try:
-                row[i] = float(word)
-            except ValueError:
-                raise BadTable(path, f"line {number}: {word!r} is not a number") from None
+            value = number(word)
+            if value is None:
+                raise BadTable(path, f"line {at}: {word!r} is not a number")
+            row[i] = value
         rows.append(row)
-        lines.append(number)
+        lines.append(at)
     return np.array(rows).reshape(-1, most), lines

@@ -1,16 +1,31 @@
 """The root of all errors, and those that any room may raise."""
 
+import re
 from pathlib import Path
 from typing import Any
 
+LONGEST_MESSAGE = 2000
+"""Characters; what stands in a file may be quoted in full, but not megabytes of it."""
+
 
 class VisionRobotError(Exception):
-    """Root of all errors of this library."""
+    """Root of all errors of this library; its message is one line that a terminal can show."""
+
+    def __init__(self, message: str = ""):
+        super().__init__(_one_line(message))
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Exceptions are pickled as a call with their message; ours take the evidence instead, and
         # have to come back from other processes.
         return _rebuilt, (type(self), self.args, self.__dict__)
+
+
+def _one_line(text: str) -> str:
+    if len(text) > LONGEST_MESSAGE:
+        text = f"{text[:LONGEST_MESSAGE]} ... ({len(text)} characters)"
+    text = re.sub(r"\s*[\r\n]\s*", " ", text)
+    # Names and cells of strangers may hold what moves a terminal's cursor, or no character at all.
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 def _rebuilt(

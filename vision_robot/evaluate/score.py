@@ -1,6 +1,5 @@
 """Scores: outcomes of a sweep gathered by scene, method and metric, each with its interval."""
 
-import json
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
@@ -13,6 +12,7 @@ from vision_robot.errors import BadTable
 from vision_robot.evaluate.metrics import metric_named
 from vision_robot.evaluate.statistics import clustered_interval
 from vision_robot.evaluate.sweep import Outcome
+from vision_robot.reading import json_tree, read_text
 
 __all__ = ["Failure", "Score", "failures", "read_scores", "scores"]
 
@@ -80,18 +80,19 @@ def failures(outcomes: Iterable[Outcome]) -> list[Failure]:
 
 def read_scores(path: Path | str) -> list[Score]:
     """The scores in a file that `vr benchmark --json` wrote. Raises BadTable for anything else."""
+    content = json_tree(read_text(path, BadTable), path, BadTable)
     try:
-        content = json.loads(Path(path).read_text(encoding="utf-8"))
         return [_score(row) for row in content["scores"]]
-    except OSError as error:
-        raise BadTable(path, error.strerror or str(error)) from error
     except (ValueError, KeyError, TypeError) as error:
         raise BadTable(path, "it holds no scores; give a file that 'vr benchmark --json' wrote") from error
 
 
 def _score(row: Mapping[str, Any]) -> Score:
-    # What JSON has no number for is null there.
-    known: dict[str, Any] = {
-        field.name: np.nan if row[field.name] is None else row[field.name] for field in fields(Score)
-    }
+    known: dict[str, Any] = {}
+    for one in fields(Score):
+        value = row[one.name]
+        # What JSON has no number for is null there.
+        known[one.name] = np.nan if value is None and one.type is float else value
+        if not isinstance(known[one.name], int | float if one.type is float else one.type):  # type: ignore[arg-type]
+            raise TypeError(one.name)
     return Score(**known)

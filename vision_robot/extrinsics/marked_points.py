@@ -1,13 +1,12 @@
 """Points marked on the table, in a CSV: ``u_px,v_px,x_mm,y_mm`` and, if it is known, ``sigma_px``."""
 
-import csv
-import io
 from pathlib import Path
 
 import numpy as np
 
 from vision_robot.calibrate.corners import Corners
 from vision_robot.errors import BadTable
+from vision_robot.reading import csv_rows, number, read_text
 from vision_robot.types import Array, Float
 
 __all__ = ["read_marked_points", "read_table"]
@@ -31,11 +30,8 @@ def read_table(
     path: Path | str, columns: tuple[str, ...], *, optional: tuple[str, ...] = ()
 ) -> dict[str, Float[Array, "n"]]:
     """Columns of finite numbers from a CSV with a heading; others are ignored."""
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise BadTable(path, getattr(error, "strerror", None) or "it is not text") from error
-    rows = [row for row in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in row)]
+    listed = csv_rows(read_text(path, BadTable), path, BadTable)
+    rows = [row for _, row in listed if any(cell.strip() for cell in row)]
     header = [name.strip() for name in rows[0]] if rows else []
     missing = [name for name in columns if name not in header]
     if missing:
@@ -51,10 +47,7 @@ def read_table(
 
 
 def _number(path: Path | str, line: int, column: str, cell: str) -> float:
-    try:
-        value = float(cell)
-    except ValueError:
-        value = float("nan")
-    if not np.isfinite(value):
+    value = number(cell)
+    if value is None or np.isnan(value):
         raise BadTable(path, f"line {line}: {column} is {cell.strip()!r}, not a finite number")
     return value

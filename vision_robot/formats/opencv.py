@@ -11,8 +11,8 @@ that needs `allow_loss`.
 
 import json
 import re
-from xml.etree import ElementTree
 
+from vision_robot.errors import BadCameraFile
 from vision_robot.formats.camera_format import ALL_LENSES, CameraFormat
 from vision_robot.formats.intrinsics import affine_from_matrix, brown_lens, make_camera
 from vision_robot.formats.number import number_text
@@ -20,6 +20,7 @@ from vision_robot.formats.parse import parse_yaml
 from vision_robot.formats.source import CameraSource
 from vision_robot.formats.tree import Tree
 from vision_robot.geometry import Camera
+from vision_robot.reading import xml_root
 
 __all__ = ["FORMAT"]
 
@@ -88,14 +89,8 @@ def _data(matrix: Tree) -> Tree:
 
 def _parse_xml(source: CameraSource) -> Tree:
     """FileStorage XML as a tree of the same form as its YAML."""
-    # Entities are the danger of XML, and FileStorage writes none.
-    if re.search(r"<!(DOCTYPE|ENTITY)", source.text):
-        raise source.bad("XML with a DOCTYPE or entities is not read")
-    try:
-        # The declaration's encoding is no longer true of decoded text.
-        root = ElementTree.fromstring(re.sub(r"\A\s*<\?xml[^>]*\?>", "", source.text))
-    except (ElementTree.ParseError, ValueError) as error:
-        raise source.bad(f"XML: {error}") from error
+    # The declaration's encoding is no longer true of decoded text.
+    root = xml_root(re.sub(r"\A\s*<\?xml[^>]*\?>", "", source.text), source.path, BadCameraFile)
     tree: dict[str, object] = {}
     for element in root:
         fields = {child.tag: (child.text or "").strip() for child in element}

@@ -47,29 +47,36 @@ def parse_yaml(source: CameraSource) -> Tree:
 
 
 def _first_document(source: CameraSource, events: Iterator[yaml.Event]) -> object:
-    """Build the first document from parser events, without recursion."""
-    anchors: dict[str, object] = {}
-    open_nodes: list[tuple[list, yaml.CollectionStartEvent]] = []
-    for count, event in enumerate(events):
+    """Build the first document from parser events, without recursion.
+
+    Aliases of aliases multiply without end, so that an alias counts as all that it stands for.
+    """
+    anchors: dict[str, tuple[object, int]] = {}
+    open_nodes: list[tuple[list, yaml.CollectionStartEvent, int]] = []
+    count = 0
+    for event in events:
+        count += 1
         if count > MAX_ENTRIES or len(open_nodes) > MAX_DEPTH:
             raise source.bad("it holds more entries, or deeper nested ones, than any camera file")
+        before = count
         if isinstance(event, yaml.CollectionStartEvent):
-            open_nodes.append(([], event))
+            open_nodes.append(([], event, count))
             continue
         if isinstance(event, yaml.ScalarEvent):
             value, anchor = event.value, event.anchor
         elif isinstance(event, yaml.AliasEvent):
             if event.anchor not in anchors:
                 raise source.bad(f"{_line(event)}*{event.anchor} is used before it is defined")
-            value, anchor = anchors[event.anchor], None
+            (value, weight), anchor = anchors[event.anchor], None
+            count += weight
         elif isinstance(event, yaml.CollectionEndEvent):
-            items, start = open_nodes.pop()
+            items, start, before = open_nodes.pop()
             anchor = start.anchor
             value = _mapping(source, items, start) if isinstance(event, yaml.MappingEndEvent) else items
         else:
             continue
         if anchor:
-            anchors[anchor] = value
+            anchors[anchor] = value, count - before + 1
         if not open_nodes:
             return value
         open_nodes[-1][0].append(value)

@@ -5,11 +5,9 @@ from functools import cached_property
 from pathlib import Path
 
 from vision_robot.errors import BadCameraFile
+from vision_robot.reading import LARGEST_TREE, read_bytes
 
 __all__ = ["CameraSource", "open_source"]
-
-MAX_BYTES = 16_000_000
-"""Files that also carry every observed corner reach some megabytes; more is something else."""
 
 
 @dataclass(frozen=True)
@@ -46,17 +44,7 @@ class CameraSource:
 
 def open_source(path: Path | str, size: tuple[int, int] | None = None) -> CameraSource:
     """Read a camera file whole; raises BadCameraFile where there is none or it is too large."""
-    path = Path(path)
-    try:
-        # Devices and pipes have no end; only plain files are read.
-        if not path.is_file():
-            raise BadCameraFile(path, "it is not a file" if path.exists() else "there is no such file")
-        with path.open("rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
-    except (OSError, ValueError) as error:
-        raise BadCameraFile(path, getattr(error, "strerror", None) or str(error)) from error
-    if len(data) > MAX_BYTES:
-        raise BadCameraFile(path, f"it is larger than {MAX_BYTES // 1_000_000} MB")
+    data = read_bytes(path, BadCameraFile, LARGEST_TREE)
     if not data.strip():
         raise BadCameraFile(path, "it is empty")
-    return CameraSource(path, data, size)
+    return CameraSource(Path(path), data, size)

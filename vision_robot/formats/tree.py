@@ -8,6 +8,7 @@ from reprlib import Repr
 from vision_robot.errors import BadCameraFile
 from vision_robot.formats.number import is_number
 from vision_robot.formats.source import CameraSource
+from vision_robot.reading import LARGEST_NUMBER
 
 __all__ = ["Tree"]
 
@@ -67,9 +68,8 @@ class Tree:
 
     def number_text(self) -> str:
         """A finite number, as written in the file."""
-        if not (isinstance(self.value, str) and is_number(self.value)) or abs(float(self.value)) == float(
-            "inf"
-        ):
+        plain = isinstance(self.value, str) and is_number(self.value)
+        if not plain or abs(float(self.value)) > LARGEST_NUMBER:
             raise self.bad(f"a finite number expected, {_short.repr(self.value)} found")
         return self.value
 

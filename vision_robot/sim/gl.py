@@ -54,10 +54,24 @@ def load_mujoco(*, rendering: bool = True) -> ModuleType:
     Physics may be loaded first and rendering later in the same process. Raises MissingOpenGL,
     with every back end tried and the reason, where rendering is asked for and none works.
     """
-    if not rendering:
-        # Only while it is imported: processes started later must still see what the user chose.
-        with _environment("MUJOCO_GL", "disable"):
-            return importlib.import_module("mujoco")
+    mujoco = _rendering() if rendering else _without_opengl()
+    # Left to itself it writes what it warns of into MUJOCO_LOG.TXT in whatever folder it is called from.
+    if mujoco.get_mju_user_warning() is None:
+        mujoco.set_mju_user_warning(_unheard)
+    return mujoco
+
+
+def _unheard(message: str) -> None:
+    """What MuJoCo warns of, our own checks say in words of the user's file."""
+
+
+def _without_opengl() -> ModuleType:
+    # Only while it is imported: processes started later must still see what the user chose.
+    with _environment("MUJOCO_GL", "disable"):
+        return importlib.import_module("mujoco")
+
+
+def _rendering() -> ModuleType:
     back_end = choose_back_end()
     try:
         return _mujoco_with(back_end)

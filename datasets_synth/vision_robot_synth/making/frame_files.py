@@ -4,10 +4,15 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+from vision_robot.errors import BadDataset
 from vision_robot.files import write_bytes
+from vision_robot.reading import read_bytes
 from vision_robot_synth.making.frame_note import FrameNote
 
 __all__ = ["FRAME", "MASK", "Workshop", "flow_pattern"]
+
+LARGEST_NOTE = 256_000_000
+"""Bytes."""
 
 FRAME, MASK = "frames/{:06d}.png", "truth/masks/{:06d}.png"
 
@@ -43,8 +48,13 @@ class Workshop:
         write_bytes(self.notes / f"{frame:06d}", note.to_bytes())
 
     def note(self, frame: int) -> FrameNote:
-        """The note of a finished frame."""
-        return FrameNote.from_bytes((self.notes / f"{frame:06d}").read_bytes())
+        """The note of a finished frame. Raises BadDataset for a damaged one."""
+        path = self.notes / f"{frame:06d}"
+        data = read_bytes(path, BadDataset, LARGEST_NOTE)
+        try:
+            return FrameNote.from_bytes(data)
+        except Exception as error:  # archives break in more ways than numpy has errors for
+            raise BadDataset(path, "it is damaged: remove it, and its frame is made anew") from error
 
     def missing(self, count: int) -> list[int]:
         """Frames that are not done."""

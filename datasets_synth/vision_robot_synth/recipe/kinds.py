@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vision_robot.reading import LARGEST_NUMBER
 from vision_robot_synth.recipe.colours import COLOURS, colour_named
 
 __all__ = ["Choice", "Colour", "Flag", "Kind", "Number", "Numbers", "Text", "Whole"]
@@ -62,7 +63,8 @@ class Number(Kind):
 
     def _number(self, value: Any) -> float | None:
         good = isinstance(value, int | float) and not isinstance(value, bool)
-        return float(value) if good and self.least <= value <= self.most and math.isfinite(value) else None
+        inside = good and self.least <= value <= self.most and abs(value) <= LARGEST_NUMBER
+        return float(value) if inside else None
 
     def drawn(self, value: Any, rng: np.random.Generator) -> Any:
         """Evenly from the pair."""
@@ -115,19 +117,21 @@ class Numbers(Kind):
     count: tuple[int, ...]
     least: float = -math.inf
     whole: bool = False
+    most: float = math.inf
 
     @property
     def allowed(self) -> str:
         """Such as: a list of 2 whole numbers from 16 on."""
         counts = " or ".join(map(str, self.count))
         bound = f" from {self.least:g} on" if math.isfinite(self.least) else ""
+        bound = f" from {self.least:g} to {self.most:g}" if math.isfinite(self.most) else bound
         return f"a list of {counts} {'whole ' if self.whole else ''}numbers{bound}"
 
     def checked(self, value: Any) -> Any:
         """A tuple."""
         if not isinstance(value, Sequence) or isinstance(value, str) or len(value) not in self.count:
             return None
-        one = (Whole if self.whole else Number)(self.least, ranged=False)
+        one = (Whole if self.whole else Number)(self.least, self.most, ranged=False)
         found = tuple(one.checked(number) for number in value)
         return None if None in found else found
 

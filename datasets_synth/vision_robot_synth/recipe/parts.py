@@ -42,7 +42,10 @@ class VideoPart:
     )
     frames: Annotated[int, Whole(1, 1_000_000, ranged=False), "frames of the video, or views"] = 120
     fps: Annotated[float, Number(0.1, 1000, ranged=False), "frames a second"] = 30.0
-    size: Annotated[tuple[int, int], Numbers((2,), 16, whole=True), "width and height [px]"] = (640, 480)
+    size: Annotated[tuple[int, int], Numbers((2,), 16, whole=True, most=16384), "width and height [px]"] = (
+        640,
+        480,
+    )
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,12 @@
 """Reading recipes: TOML, what it extends, and every key checked by name."""
 
-import tomllib
 from collections.abc import Mapping
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 from vision_robot.errors import BadRecipe
+from vision_robot.reading import LARGEST_OPTIONS, read_text, toml_tree
 from vision_robot_synth.recipe.parts import PARTS, Key, ThingPart, VideoPart, keys_of
 from vision_robot_synth.recipe.recipe import Recipe
 from vision_robot_synth.recipe.sensor_keys import SENSOR_KEYS
@@ -55,10 +55,7 @@ def _merged(path: Path, below: tuple[Path, ...]) -> dict[str, Any]:
     """The tables of a file laid over those it extends."""
     if path in below or len(below) > DEEPEST:
         raise BadRecipe(path.stem, f"it extends itself, by way of {', '.join(p.stem for p in below)}")
-    try:
-        tree = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise BadRecipe(path.name, getattr(error, "strerror", None) or f"it is no TOML: {error}") from error
+    tree = toml_tree(read_text(path, BadRecipe, LARGEST_OPTIONS), path.name, BadRecipe)
     parent = tree.pop("extend", None)
     if parent is None:
         return tree

@@ -128,5 +128,5 @@ def test_degrees_without_a_name_are_suspected(tmp_path):
     path.write_text("d1,theta2,theta3,theta4,theta5\n0.1,90,45,30,20\n")
     with pytest.raises(BadPoseFile, match="are these degrees"):
         read_poses(path).joint_values(read_arm("column").chain)
-    with pytest.raises(BadPoseFile, match="No such file"):
+    with pytest.raises(BadPoseFile, match="no such file"):
         read_poses(tmp_path / "none.csv")

@@ -1,7 +1,5 @@
 """Joint values over time as a CSV: a column of seconds and one for each joint, its unit in its name."""
 
-import csv
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +9,7 @@ import numpy as np
 from vision_robot.errors import BadTable
 from vision_robot.files import write_text
 from vision_robot.geometry.chain import SerialChain
+from vision_robot.reading import LARGEST_TABLE, csv_rows, number, read_text
 from vision_robot.types import Array, Float
 
 __all__ = ["JointTable"]
@@ -82,16 +81,12 @@ class JointTable:
     @classmethod
     def read(cls, path: Path | str, chain: SerialChain) -> "JointTable":
         """Read the columns of `chain`'s joints. Raises BadTable, naming line and column."""
-        try:
-            text = Path(path).read_text(encoding="utf-8-sig")
-        except (OSError, UnicodeDecodeError) as error:
-            raise BadTable(path, getattr(error, "strerror", None) or "it is not text") from error
-        return cls.from_csv(text, chain, path)
+        return cls.from_csv(read_text(path, BadTable, LARGEST_TABLE), chain, path)
 
     @classmethod
     def from_csv(cls, text: str, chain: SerialChain, source: object = "joint table") -> "JointTable":
         """The table in a CSV text; columns of other names are left out."""
-        rows = [row for row in csv.reader(io.StringIO(text)) if row]
+        rows = [row for _, row in csv_rows(text, source, BadTable)]
         header = [cell.strip() for cell in rows[0]] if rows else []
         if TIME not in header:
             raise BadTable(source, f"its first line lacks the column {TIME}")
@@ -122,11 +117,10 @@ def _column(header: Sequence[str], joint: str, scales: dict[str, float], source:
 
 
 def _number(cell: str, source: object, line: int, column: str) -> float:
-    try:
-        value = float(cell)
-    except ValueError:
-        raise BadTable(source, f"line {line}: {column} is {cell!r}, not a number") from None
-    if not np.isfinite(value):
+    value = number(cell)
+    if value is None:
+        raise BadTable(source, f"line {line}: {column} is {cell!r}, not a number")
+    if np.isnan(value):
         raise BadTable(source, f"line {line}: {column} is {cell!r}, not finite")
     return value
 

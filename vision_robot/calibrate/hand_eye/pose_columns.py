@@ -8,6 +8,7 @@ import numpy as np
 
 from vision_robot.calibrate.hand_eye.pose_table import LENGTHS, PoseTable, Reading
 from vision_robot.errors import BadPoseFile
+from vision_robot.reading import number
 from vision_robot.types import Array, Float
 
 __all__ = ["columns_of", "table_of"]
@@ -54,10 +55,10 @@ class Column:
     @property
     def is_text(self) -> bool:
         """Whether no cell is a number: a remark, a date."""
-        return all(_number(cell) is None for cell in self.cells)
+        return all(number(cell) is None for cell in self.cells)
 
     def _value(self, text: str, row: str) -> float:
-        value = _number(text)
+        value = number(text)
         if value is None or not np.isfinite(value):
             raise BadPoseFile(self.source, f"{row}: {self.name} is {text[:40]!r}, not a finite number")
         return value
@@ -69,7 +70,7 @@ def columns_of(
     """Columns by their plain names; picture names that stand first in a file without header are found."""
     width = len(cells[0])
     if header is None:
-        named = width - 1 in UNNAMED and _number(cells[0][0]) is None
+        named = width - 1 in UNNAMED and number(cells[0][0]) is None
         names = ("image", *UNNAMED[width - 1]) if named else UNNAMED.get(width)
         if names is None:
             raise BadPoseFile(
@@ -190,10 +191,3 @@ def _in_si(column: Column) -> Float[Array, "n"]:
     if column.unit == "deg":
         return np.radians(column.numbers)
     return column.numbers * LENGTHS.get(column.unit, 1.0)
-
-
-def _number(text: str) -> float | None:
-    try:
-        return float(text)
-    except ValueError:
-        return None

@@ -7,9 +7,6 @@ Without names the count of numbers tells: 6 x y z and rotation vector; 7 the sam
 a time before (TUM); 12 or 16 matrix.
 """
 
-import csv
-import io
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -18,23 +15,15 @@ import numpy as np
 from vision_robot.calibrate.hand_eye.pose_columns import columns_of, table_of
 from vision_robot.calibrate.hand_eye.pose_table import PoseTable
 from vision_robot.errors import BadPoseFile
+from vision_robot.reading import csv_rows, json_tree, number, read_text
 
 __all__ = ["read_poses"]
-
-LARGEST_BYTES = 64_000_000
 
 
 def read_poses(path: Path | str) -> PoseTable:
     """Read a pose file; raises BadPoseFile naming line and column of what cannot be used."""
     path = Path(path)
-    try:
-        if path.is_file() and path.stat().st_size > LARGEST_BYTES:
-            raise BadPoseFile(path, f"it is larger than {LARGEST_BYTES // 1_000_000} MB")
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise BadPoseFile(path, "it is not text") from error
-    except OSError as error:
-        raise BadPoseFile(path, error.strerror or str(error)) from error
+    text = read_text(path, BadPoseFile)
     if not text.strip():
         raise BadPoseFile(path, "it is empty")
     if text.lstrip()[0] in "[{":
@@ -58,12 +47,12 @@ def _from_lines(text: str, path: Path) -> tuple[list[str] | None, list[list[str]
     mark = next((mark for mark in (",", ";", "\t") if mark in lines[0][1]), None)
 
     def split(line: str) -> list[str]:
-        found = next(csv.reader(io.StringIO(line), delimiter=mark)) if mark else line.split()
+        found = next(csv_rows(line, path, BadPoseFile, mark), (0, []))[1] if mark else line.split()
         return [cell.strip() for cell in found]
 
     table = [(i, split(line)) for i, line in lines]
     first = table[0][1]
-    has_header = sum(_is_number(cell) for cell in first) <= 1 and len(first) > 1
+    has_header = sum(number(cell) is not None for cell in first) <= 1 and len(first) > 1
     header = first if has_header else None
     body = table[1:] if has_header else table
     width = len(first)
@@ -75,11 +64,7 @@ def _from_lines(text: str, path: Path) -> tuple[list[str] | None, list[list[str]
 
 def _from_json(text: str, path: Path) -> tuple[list[str], list[list[str]], list[str]]:
     """The same from a list of objects, under the key `poses` or `views` or at the top."""
-    try:
-        tree = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
-        line, why = getattr(error, "lineno", 1), getattr(error, "msg", "nested too deeply")
-        raise BadPoseFile(path, f"line {line}: {why}") from error
+    tree = json_tree(text, path, BadPoseFile)
     if isinstance(tree, Mapping):
         tree = next((tree[key] for key in ("poses", "views", "data") if key in tree), None)
     if not isinstance(tree, list):
@@ -146,11 +131,3 @@ def _flattened(item: Mapping) -> Sequence[tuple[str, object]]:
 def _even(value: list) -> bool:
     """Whether a list is flat, or rows of one length."""
     return len({len(row) if isinstance(row, list) else -1 for row in value}) == 1
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True

@@ -7,9 +7,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from vision_robot.errors import BadTable
+from vision_robot.errors import BadParameter, BadTable
 from vision_robot.evaluate.sweep.cell import Cell, Outcome
 from vision_robot.files import write_text
+from vision_robot.reading import json_tree, read_text
 
 __all__ = ["Store"]
 
@@ -25,8 +26,8 @@ class Store:
     def find(self, cell: Cell) -> Outcome | None:
         """The outcome of this very cell; None where there is none, or its file is damaged."""
         try:
-            return _outcome(json.loads(self._place(cell.key).read_text(encoding="utf-8")))
-        except (OSError, ValueError, KeyError, TypeError):
+            return _read(self._place(cell.key))
+        except BadTable:
             return None
 
     def keep(self, outcome: Outcome) -> None:
@@ -40,20 +41,29 @@ class Store:
     def __iter__(self) -> Iterator[Outcome]:
         """All outcomes, in the order of their keys. Raises BadTable, naming it, for a file that is none."""
         for path in sorted(self.folder.glob("??/*.json")):
-            try:
-                yield _outcome(json.loads(path.read_text(encoding="utf-8")))
-            except (OSError, ValueError, KeyError, TypeError) as error:
-                raise BadTable(path, "it is no outcome of a sweep; remove it") from error
+            yield _read(path)
 
     def _place(self, key: str) -> Path:
         return self.folder / key[:2] / f"{key}.json"
 
 
+def _read(path: Path) -> Outcome:
+    content = json_tree(read_text(path, BadTable), path, BadTable)
+    try:
+        return _outcome(content)
+    except (ValueError, KeyError, TypeError, AttributeError, BadParameter) as error:
+        raise BadTable(path, "it is no outcome of a sweep; remove it") from error
+
+
 def _outcome(content: dict[str, Any]) -> Outcome:
     if content["schema"] != SCHEMA:
         raise ValueError(content["schema"])
+    cell = Cell(**content["cell"])
+    words = (cell.suite, cell.scene, cell.method, cell.work, content["failure"] or "", *content["figures"])
+    if not all(isinstance(word, str) for word in words) or not isinstance(cell.seed, int):
+        raise TypeError(f"words and a seed expected, {words} and {cell.seed} found")
     return Outcome(
-        cell=Cell(**content["cell"]),
+        cell=cell,
         # What JSON has no number for stands there as a word: nan, inf.
         figures={name: float(value) for name, value in content["figures"].items()},
         failure=content["failure"],
