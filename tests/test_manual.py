@@ -61,7 +61,7 @@ def test_there_is_something_to_test():
 @pytest.mark.parametrize(("place", "body"), blocks("python"))
 def test_code_parses_and_its_imports_are_there(place, body):
     tree = ast.parse(body)
-    imports = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
+    imports: list[ast.stmt] = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
     exec(compile(ast.Module(imports, []), place, "exec"), {})
 
 
