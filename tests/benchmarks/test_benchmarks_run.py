@@ -22,6 +22,7 @@ QUICK = [
     "triangulation",
     "truth_accuracy",
     "truth_speed",
+    "untilted",
 ]
 
 
