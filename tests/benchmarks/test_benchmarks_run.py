@@ -23,6 +23,7 @@ QUICK = [
     "triangulation",
     "truth_accuracy",
     "truth_speed",
+    "untilted",
 ]
 
 
