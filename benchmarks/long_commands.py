@@ -50,7 +50,7 @@ COMMANDS = {
                 "benchmark",
                 "calibration",
                 "--scene",
-                "views-4",
+                "views=4",
                 "--method",
                 "cv2",
                 "--method",
@@ -174,6 +174,11 @@ class Ended:
         return told and "Traceback" not in self.err + self.out and "Exception ignored" not in self.err
 
 
+def _hears_interrupts() -> None:
+    """Shells start what runs in their background deaf to Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def start(command: Sequence[str], **options: object) -> "subprocess.Popen[str]":
     """The process, at the head of a session of its own."""
     usual: dict[str, object] = {
@@ -183,6 +188,7 @@ def start(command: Sequence[str], **options: object) -> "subprocess.Popen[str]":
         "text": True,
         "errors": "backslashreplace",
         "start_new_session": True,
+        "preexec_fn": _hears_interrupts,
         "cwd": ROOT,
     }
     return subprocess.Popen(command, **{**usual, **options})  # type: ignore[call-overload]

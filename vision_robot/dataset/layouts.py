@@ -31,12 +31,19 @@ def open_dataset(path: Path | str, layout: str | None = None) -> Dataset:
     if not folder.is_dir():
         raise BadDataset(path, "there is no such folder")
     if layout:
-        return _layout(layout).read(folder)
+        return _read(layout, folder)
     for name in LAYOUTS:
         if _layout(name).recognises(folder):
-            return _layout(name).read(folder)
+            return _read(name, folder)
     marks = ", ".join(f"{_layout(name).mark} ({name})" for name in LAYOUTS)
     raise BadDataset(path, f"none of these is in it: {marks}")
+
+
+def _read(name: str, folder: Path) -> Dataset:
+    try:
+        return _layout(name).read(folder)
+    except OSError as error:  # such as names in its tables that are too long to be names
+        raise BadDataset(folder, error.strerror or str(error)) from error
 
 
 def _layout(name: str) -> Layout:
