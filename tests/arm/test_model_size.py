@@ -46,7 +46,7 @@ def test_what_it_includes_counts(tmp_path):
 def test_an_ordinary_model_with_copies_is_read(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     inside = '<replicate count="20" offset="0 0 .1"><geom size=".01"/></replicate>'
-    (tmp_path / "a.xml").write_text(model(inside, '<size memory="1M" njmax="100000"/>'))
+    (tmp_path / "a.xml").write_text(model(inside))
     assert len(read_arm(tmp_path / "a.xml")) == 1
 
 

@@ -21,7 +21,7 @@ COUNTS = {
     "hfield": (("nrow", "ncol"), 100_000_000),
     "texture": (("width", "height"), 100_000_000),
 }
-"""Element -> those of its attributes whose product says how many things it stands for, and the most allowed."""
+"""Element -> the attributes whose product says how many things it stands for, and the most allowed."""
 
 MOST_NUMBERS = 10_000
 """Each number of <size> but those that only reserve memory, which MuJoCo refuses itself."""
