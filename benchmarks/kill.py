@@ -157,7 +157,9 @@ def interrupted(command: LongCommand, place: Path, tally: Tally, rng: random.Ran
     out, err = process.communicate()
     took = time.monotonic() - begin
     tally.slowest_interrupt_s = max(tally.slowest_interrupt_s, took)
-    well = process.returncode in (130, 0) and "Traceback" not in out + err and gone(process.pid, 10.0)
+    # To a shell an end by the signal itself is 130 as well.
+    well = process.returncode in (130, -signal.SIGINT) or (process.returncode == 0 and took < PATIENCE_S)
+    well = well and "Traceback" not in out + err and gone(process.pid, 10.0)
     tally.interrupted_well += well and took < PATIENCE_S
     if not well or took >= PATIENCE_S:
         told = f"Ctrl-C: ended with {process.returncode} after {took:.1f} s: {err.strip()[-160:]}"

@@ -123,3 +123,12 @@ class Lengthless:
 
     def get(self, what: int) -> float:
         return 0.0 if what == cv2.CAP_PROP_FRAME_COUNT else self._capture.get(what)
+
+
+def test_a_name_that_is_no_text_is_refused_before_it_crashes_opencv(tmp_path):
+    odd = tmp_path / "caf\udce9.mkv"
+    write(tmp_path / "a.mkv", np.zeros((2, 48, 64, 3), np.uint8)).rename(odd)
+    with pytest.raises(BadVideo, match="no text"):
+        Video(odd)
+    with pytest.raises(BadVideo, match="no text"):
+        VideoWriter(odd, (64, 48), 25)

@@ -89,12 +89,23 @@ def open_video(path: Path, refuse: Refusal) -> cv2.VideoCapture:
     """OpenCV's reader of a plain file whose frames are not beyond all measure."""
     if not path.is_file():
         raise refuse(path, "it is not a plain file" if path.exists() else "there is no such file")
+    if not _is_text(path):
+        raise refuse(path, "its name is no text in UTF-8: rename it")
     capture = cv2.VideoCapture(str(path))
     width, height = (capture.get(side) for side in (cv2.CAP_PROP_FRAME_WIDTH, cv2.CAP_PROP_FRAME_HEIGHT))
     if width * height > MOST_PIXELS:
         capture.release()
         raise refuse(path, f"its frames are {width:.0f}x{height:.0f} px, more than {MOST_PIXELS} in all")
     return capture
+
+
+def _is_text(path: Path) -> bool:
+    """Whether OpenCV can be given the name; others crash it."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 class VideoWriter:
@@ -108,6 +119,8 @@ class VideoWriter:
         self.path, self.size, self.fps = Path(path), size, float(fps)
         if self.path.suffix.lower() not in CODECS:
             raise BadParameter("video file", str(path), f"named *{', *'.join(CODECS)}")
+        if not _is_text(self.path):
+            raise BadVideo(path, "its name is no text in UTF-8: choose another")
         if not (np.isfinite(self.fps) and self.fps > 0):
             raise BadParameter("fps", fps, "positive")
 
