@@ -79,7 +79,7 @@ def main() -> None:
 
 def arguments() -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--only", action="append", help="Only conditions whose names hold this.")
     parser.add_argument("--command", action="append", help="Only this command.")
     parser.add_argument("--quick", action="store_true", help="Only show that it runs.")

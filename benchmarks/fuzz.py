@@ -77,7 +77,7 @@ def main() -> None:
 
 def arguments() -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--only", action="append", help="Only readers whose names hold this.")
     parser.add_argument("--first", type=int, default=0, help="Number of the first case.")
     parser.add_argument("--count", type=int, default=3000, help="Cases of each reader.")
@@ -190,7 +190,7 @@ def guided(tally: Tally, atheris_path: str, seconds: int) -> None:
 def table(tallies: list[Tally]) -> str:
     """Markdown."""
     columns = ("reader", "spoiled files", "read", "refused", "guided", "anything else", "slowest, s")
-    rows = [
+    rows: list[tuple[object, ...]] = [
         (t.reader, t.inputs, t.read, t.refused, t.guided or "", t.failed or "none", f"{t.slowest_s:.2f}")
         for t in tallies
     ]

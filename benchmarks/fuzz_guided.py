@@ -9,6 +9,7 @@ import json
 import os
 import sys
 import tempfile
+from importlib import import_module
 from pathlib import Path
 from time import monotonic
 
@@ -19,7 +20,7 @@ def main(atheris_path: str, reader: str, corpus: str, seconds: str) -> None:
     """Fuzz until the time is over; does not return."""
     sys.path[:0] = [str(ROOT)]
     sys.path.append(atheris_path)
-    import atheris
+    atheris = import_module("atheris")
 
     with atheris.instrument_imports(include=["vision_robot", "vision_robot_cli", "vision_robot_synth"]):
         from tests.fuzz.limits import limit_memory

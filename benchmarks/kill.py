@@ -58,7 +58,7 @@ def main() -> None:
 
 def arguments() -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--only", action="append", help="Only commands whose names hold this.")
     parser.add_argument("--rounds", type=int, default=4, help="Rounds of three kills and one interrupt.")
     parser.add_argument("--seed", type=int, default=0)
