@@ -11,10 +11,13 @@ ROOT = Path(__file__).parents[2]
 
 
 QUICK = [
+    "adversity",
     "coverage",
+    "fuzz",
     "hand_eye",
     "ik",
     "ik_export",
+    "kill",
     "measure",
     "next_view",
     "refinement",
