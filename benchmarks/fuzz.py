@@ -17,6 +17,7 @@ import resource
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -72,7 +73,7 @@ def main() -> None:
 
 def arguments() -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", action="append", help="Only readers whose names hold this.")
     parser.add_argument("--first", type=int, default=0, help="Number of the first case.")
     parser.add_argument("--count", type=int, default=3000, help="Cases of each reader.")
@@ -185,7 +186,7 @@ def guided(tally: Tally, atheris_path: str, seconds: int) -> None:
 def table(tallies: list[Tally]) -> str:
     """Markdown."""
     columns = ("reader", "spoiled files", "read", "refused", "guided", "anything else", "slowest, s")
-    rows = [
+    rows: list[Sequence[object]] = [
         (t.reader, t.inputs, t.read, t.refused, t.guided or "", t.failed or "none", f"{t.slowest_s:.2f}")
         for t in tallies
     ]

@@ -165,4 +165,4 @@ def _cell(
     return Cell("trackers", scene, method, seed, f"{tracker_cells.__name__}:{name}", told, alone)
 
 
-SUITE = Suite("trackers", tuple(SCENES), tuple(contestant_names()), "hota", 0.5, cells, on_data)
+SUITE = Suite("trackers", tuple(SCENES), tuple(contestant_names()), "hota", 0.5, cells, on_data=on_data)
