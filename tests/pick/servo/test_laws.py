@@ -19,7 +19,7 @@ VIEW = ordinary_world().view
 BELIEVED = WorkPlane.exact(VIEW.camera, VIEW.cam_from_station)
 HEIGHT_M = 0.005
 HOW = Servoing()
-SMALL = st.floats(-1.0, 1.0)
+THREE = st.tuples(*3 * [st.floats(-1.0, 1.0)])
 
 
 def knocked(turn_deg, shift_mm):
@@ -45,12 +45,7 @@ PLACE = (0.03, -0.06)
 
 @pytest.mark.parametrize("law", LAWS)
 @settings(max_examples=15)
-@given(
-    st.tuples(SMALL, SMALL, SMALL),
-    st.tuples(SMALL, SMALL, SMALL),
-    st.floats(-0.1, 0.08),
-    st.floats(-0.1, 0.1),
-)
+@given(THREE, THREE, st.floats(-0.1, 0.08), st.floats(-0.1, 0.1))
 def test_every_law_finds_the_thing_within_the_capture_range(law, turn, shift, x, y):
     """Up to 2 degrees and 20 mm on each axis, without noise: to a thirtieth of what open loop misses by."""
     true = knocked(2 * np.array(turn), 20 * np.array(shift))

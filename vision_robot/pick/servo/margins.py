@@ -54,7 +54,7 @@ def critical_gain_per_s(
     def calm(gain: float) -> bool:
         return growth(gain, delay, mismatch, compensate=compensate, follow=follow) < 1
 
-    gains = np.linspace(1e-3, 1.0, 400)
+    gains = np.linspace(1e-3, 1.0, 80)
     wild = np.flatnonzero([not calm(float(gain)) for gain in gains])
     if not len(wild):
         return np.inf
