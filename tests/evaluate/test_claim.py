@@ -8,6 +8,7 @@ from vision_robot.evaluate.sweep import Cell, Outcome
 
 CLAIM = Claim("the text", "rgb", ("flow", "background"))
 SEEDS = 8
+NEARLY_UP = [0.9 + 0.001 * (k % 3) for k in range(SEEDS)]
 UP, MIDDLE, DOWN = ([base + 0.001 * k for k in range(SEEDS)] for base in (0.9, 0.6, 0.3))
 
 
@@ -20,6 +21,7 @@ def made(scene: str, rgb: list[float], flow: list[float], background: list[float
     [
         (UP, MIDDLE, DOWN, "holds"),
         (MIDDLE, UP, DOWN, "fails"),
+        (UP, NEARLY_UP, DOWN, "equal"),
         (UP, UP, DOWN, "equal"),
         ([0.2, 1.0] * 4, [1.0, 0.2] * 4, DOWN, "open"),
     ],

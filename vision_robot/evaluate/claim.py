@@ -54,7 +54,7 @@ class Finding:
             return "open"
         if len(ahead) == len(self.pairs):
             return "holds"
-        settled = ahead + [one for one in self.pairs if one.verdict == "equivalent"]
+        settled = ahead + [one for one in self.pairs if one.verdict in ("equivalent", "same")]
         return "equal" if len(settled) == len(self.pairs) else "open"
 
 
