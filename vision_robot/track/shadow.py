@@ -49,8 +49,14 @@ def without_shadows(
     label = np.repeat(runs.label, runs.stop - runs.first) - 1  # in the order of the pixels
     area = np.bincount(label, minlength=runs.count)
     other = np.bincount(label, ~like, minlength=runs.count) / area
-    through = (other < LEFT) & (_texture(seen, behind, inner, label) > SAME_TEXTURE)
+    texture = _texture(seen, behind, inner, label)
     shadow = like & (factor < BRIGHTEST) & (other >= LEFT)[label]
+    through = (other < LEFT) & (texture > SAME_TEXTURE)
+    if shadow.any():
+        # Specks too small for detail are of the shadows beside them where they are as dark.
+        darkest, brightest = np.quantile(factor[shadow], (0.05, 0.95))
+        mean = np.bincount(label, factor, minlength=runs.count) / area
+        through |= (other < LEFT) & np.isnan(texture) & (mean > darkest) & (mean < brightest)
     rest = inner.copy()
     rest.ravel()[at[shadow | through[label]]] = 0
     kept, lit = mask.copy(), background.copy()
@@ -75,7 +81,7 @@ def _factor(
 
 
 def _texture(seen: Image, behind: Image, mask: UInt8[Array, "h w"], label: Array) -> Float[Array, "n"]:
-    """Correlation of the fine detail of frame and background in each piece; 0 where it cannot be told."""
+    """Correlation of the fine detail of frame and background in each piece; NaN where it cannot be told."""
     count = int(label.max()) + 1
     core = cv2.erode(mask, np.ones((DETAIL_PX, DETAIL_PX), np.uint8), borderValue=0)[mask > 0] > 0
     fine = []
@@ -85,7 +91,7 @@ def _texture(seen: Image, behind: Image, mask: UInt8[Array, "h w"], label: Array
     a, b = fine
     cross, own, theirs = (np.bincount(label, one, minlength=count) for one in (a * b, a * a, b * b))
     told = np.bincount(label, core, minlength=count) >= FEWEST_PX
-    return np.where(told, cross / np.sqrt(np.maximum(own * theirs, 1e-9)), 0.0)
+    return np.where(told, cross / np.sqrt(np.maximum(own * theirs, 1e-9)), np.nan)
 
 
 def _without_crumbs(rest: UInt8[Array, "h w"], pieces: Runs) -> UInt8[Array, "h w"]:
