@@ -35,6 +35,7 @@ def pick(
     video: Annotated[
         Path | None, typer.Option(help="Film the first episode, what is believed drawn in: pick.mp4.")
     ] = None,
+    fps: Annotated[float, typer.Option(help="Pictures a second of the film.")] = 15.0,
     report: Report = None,
     workers: Annotated[int, typer.Option(help="Processes.")] = 1,
     seed: Seed = 0,
@@ -52,10 +53,10 @@ def pick(
     if report:
         check_place(report)
     if video:
-        pick_film.check_film(video)
+        pick_film.check_film(video, fps)
     run = pick_run(episodes, loop, tracker, options or (), fault or (), budget, workers, seed)
     if video:
-        pick_film.write_film(run.world, run.plan, seed, video)
+        pick_film.write_film(run.world, run.plan, seed, video, fps)
     if report:
         pick_report.write_report(run, report, seed)
     if json:

@@ -11,17 +11,22 @@ ROOT = Path(__file__).parents[2]
 
 
 QUICK = [
+    "adversity",
     "coverage",
+    "fuzz",
     "hand_eye",
     "ik",
     "ik_export",
+    "kill",
     "measure",
     "next_view",
     "refinement",
     "synth_speed",
+    "trackers",
     "triangulation",
     "truth_accuracy",
     "truth_speed",
+    "untilted",
 ]
 
 

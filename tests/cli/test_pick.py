@@ -25,6 +25,26 @@ def test_a_missed_success_ends_with_3(capsys):
     assert "grasp_success" in captured.err
 
 
+def test_a_page_a_film_and_a_budget(capsys, tmp_path):
+    page, film = tmp_path / "pick.html", tmp_path / "pick.mp4"
+    words = ["--episodes", "1", "--budget", "--report", str(page), "--video", str(film), "--fps", "2"]
+    assert run(["pick", *words, "--json"]) == 0
+    budget = json.loads(capsys.readouterr().out)["error_budget"]
+    stages = ("calibration", "tracking", "plane", "ik", "control")
+    assert sum(budget[one] for one in stages) + budget["unexplained"] == pytest.approx(budget["total"])
+    assert sum(budget["predicted"][one] for one in stages) == pytest.approx(budget["predicted"]["total"])
+    assert budget["alone"]["ik"]["verdict"] == "agrees"
+    assert "Where the millimetres come from" in page.read_text()
+    assert film.stat().st_size > 10_000
+
+
+def test_a_film_that_cannot_be_written_is_refused_before_any_episode(capsys):
+    assert run(["pick", "--episodes", "100000", "--video", "pick.gif"]) == 2
+    assert ".mp4" in capsys.readouterr().err
+    assert run(["pick", "--episodes", "100000", "--video", "pick.mp4", "--fps", "0"]) == 2
+    assert "--fps" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [

@@ -38,6 +38,9 @@ GROWN = 3.0
 
 SAME_LIGHT = 0.005
 
+COMPACT = 0.6
+"""Share of its ellipse that a thing covers; what noise scatters covers less."""
+
 ALIKE = 5.0
 """Things up to so many times larger or smaller than what was picked count as more of the same."""
 
@@ -209,7 +212,7 @@ class Rgb(Tracker):
         alone.learn([frame[region]], frame[:0].reshape(-1, 3))
         runs = Runs.of_mask(cv2.medianBlur(alone.classify(frame), 3))
         blobs, area = analyse_runs(runs), float(region.sum())
-        alike = (blobs.area_px > area / ALIKE) & (blobs.area_px < area * ALIKE) & (blobs.extent > 0.3)
+        alike = (blobs.area_px > area / ALIKE) & (blobs.area_px < area * ALIKE) & _compact(blobs)
         return near | runs.painted(alike, region.shape)
 
     def _by_name(self, asked: list[tuple[str, Array]]) -> UInt8[Array, "cells"]:
@@ -263,6 +266,11 @@ class Rgb(Tracker):
     def _even(self, colours: UInt8[Array, "k 3"]) -> UInt8[Array, "k 3"]:
         """Colours as the light of the first frame would show them."""
         return np.clip(colours / self._gains, 0, 255).astype(np.uint8)
+
+
+def _compact(blobs: Blobs) -> Bool[Array, "n"]:
+    """What fills its ellipse, however slender and however it lies."""
+    return blobs.area_px > COMPACT * np.pi / 4 * blobs.axes_px.prod(axis=1)
 
 
 def _whole(value: int) -> Array:

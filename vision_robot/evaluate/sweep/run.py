@@ -48,7 +48,7 @@ def run_sweep(
     `workspace` lies beside the outcomes. Raises NoScheduler where no cluster answers, and what
     `measure` raises.
     """
-    workspace = store.folder / "workspace"
+    workspace = store.workspace
     if workers < 1:
         raise BadParameter("workers", workers, "a whole number from 1 on")
     if patience_s is not None and not patience_s > 0:
