@@ -30,6 +30,8 @@ pins:  ## newest versions that fit together; each file holds only what the one b
 	$(COMPILE) --group test -c requirements.txt | grep -vxFf requirements.txt > requirements-test.txt
 	$(COMPILE) --group test --group lint -c requirements.txt -c requirements-test.txt \
 		| grep -vxFf requirements.txt | grep -vxFf requirements-test.txt > requirements-lint.txt
+	$(COMPILE) --group test --group docs -c requirements.txt -c requirements-test.txt \
+		| grep -vxFf requirements.txt | grep -vxFf requirements-test.txt > requirements-docs.txt
 
 demo:
 	./vr demo

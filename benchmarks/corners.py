@@ -141,7 +141,7 @@ def main() -> None:
         [kind, *(f"{value:.{4 if name in METHODS else 2}f}" for name, value in row_of.items())]
         for kind, row_of in figures.items()
     ]
-    print(shown("benchmark.corners/1", figures, markdown(columns, rows), as_json=options.json))
+    print(shown("vr.benchmark.corners/1", figures, markdown(columns, rows), as_json=options.json))
 
 
 if __name__ == "__main__":

@@ -263,7 +263,7 @@ def main() -> None:
         columns = [name, *next(iter(rows.values()))]
         body = [[key, *(f"{value:.4g}" for value in row.values())] for key, row in rows.items()]
         text.append(markdown(columns, body))
-    print(shown("benchmark.flow/1", figures, "\n\n".join(text), as_json=options.json))
+    print(shown("vr.benchmark.flow/1", figures, "\n\n".join(text), as_json=options.json))
 
 
 if __name__ == "__main__":

@@ -15,8 +15,8 @@
 # # The text's worked example, and its mistake
 #
 # The 2019 text from which this project comes calibrates a camera with MATLAB and derives a formula from
-# pixels (x, y) to millimetres (X, Y) on the table, the plane Z = 0. Here its numbers are reproduced from
-# its inputs, then the right mapping is set beside them.
+# pixels (x, y) to millimetres (X, Y) on the table, the plane Z = 0. Here its numbers are reproduced from its
+# inputs, then the right mapping is set beside them.
 #
 # Everything stays in the text's own units and pixels: millimetres, and MATLAB's pixels, whose first has its
 # centre at (1, 1). Ours are one less; `vision_robot.formats` converts when it reads the matrix.
@@ -32,6 +32,7 @@ from vision_robot.formats import read_camera
 from vision_robot.geometry import SE3, pixel_grid, plane_from_pixels, plane_homography
 
 np.set_printoptions(suppress=True, precision=4)
+plt.style.use("look.mplstyle")
 
 # %% [markdown]
 # ## What the text publishes
@@ -146,9 +147,9 @@ print(f"error       {error} mm, {np.hypot(*error) / 1000:.1f} m")
 # Two mistakes are in it.
 #
 # **K' stands where K belongs.** The principal point sits in the third row, which is then dropped, so it
-# drops out of the formula. And the scale: after 10⁻⁵ one pixel counts 1/0.0106 = 94 mm, where at 1.24 m
-# from this lens it is 1.17 mm. If x and y were scaled by 10⁻⁵ too, the formula would answer (227, 166) mm
-# for every pixel, to within a millimetre.
+# drops out of the formula. And the scale: after 10⁻⁵ one pixel counts 1/0.0106 = 94 mm, where at 1.24 m from
+# this lens it is 1.17 mm. If x and y were scaled by 10⁻⁵ too, the formula would answer (227, 166) mm for
+# every pixel, to within a millimetre.
 #
 # **The division is dropped.** With the right K, what would be lost by this alone? Divide $K\,[r_1\ r_2\ t]$
 # by its last entry, 1240 mm, and leave out the last row as the text does:

@@ -25,6 +25,7 @@ LAYERS = (
         "sim",
         "images",
         "video",
+        "bag",
         "tracks",
         "dataset",
         "flatten",

@@ -1,14 +1,15 @@
-"""Pictures from files, folders, patterns and videos, read when they are needed."""
+"""Pictures from files, folders, patterns, videos and ROS bags, read when they are needed."""
 
 import glob
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import cv2
 import numpy as np
 
+from vision_robot.bag import Bag, is_bag
 from vision_robot.errors import BadParameter, NoImages, UnreadableImage
 from vision_robot.reading import LARGEST_PICTURE, Refusal, read_bytes
 from vision_robot.types import Image
@@ -45,15 +46,18 @@ class ImageSource(Mapping[str, Image]):
         return len(self._readers)
 
 
-def open_images(paths: Sequence[Path | str], *, every: int | None = None) -> ImageSource:
-    """All pictures that `paths` name: files, folders, patterns such as ``"set/*.png"``, videos.
+def open_images(
+    paths: Sequence[Path | str], *, every: int | None = None, topic: str | None = None
+) -> ImageSource:
+    """All pictures that `paths` name: files, folders, patterns such as ``"set/*.png"``, videos, ROS bags.
 
     They come in natural order (``2`` before ``10``), each once however often it is named. Pictures
     are named by their files, or by their paths where two files have one name. Of a video every `every`-th
-    frame is taken; without it, the sharpest frame of each of `VIDEO_PICTURES` equal stretches.
+    frame is taken; without it, the sharpest frame of each of `VIDEO_PICTURES` equal stretches. A bag is a
+    video; `topic` says which one where it holds several.
 
-    Raises NoImages for paths that hold none, UnreadableImage for videos that cannot be read; files are
-    read later, and raise then.
+    Raises NoImages for paths that hold none, UnreadableImage and BadBag for videos and bags that cannot be
+    read; files are read later, and raise then.
     """
     if every is not None and every < 1:
         raise BadParameter("every", every, "a whole number from 1 on")
@@ -64,6 +68,8 @@ def open_images(paths: Sequence[Path | str], *, every: int | None = None) -> Ima
             raise NoImages([path])
         for file in found:
             files.setdefault(os.path.realpath(file), file)
+    if topic is not None and not any(map(is_bag, files.values())):
+        raise BadParameter("topic", topic, "left out: no ROS bag is given")
     ordered = sorted(files.values(), key=lambda file: _natural(str(file)))
     shared = len({file.name for file in ordered}) < len(ordered)
     readers: dict[str, Callable[[], Image]] = {}
@@ -71,6 +77,8 @@ def open_images(paths: Sequence[Path | str], *, every: int | None = None) -> Ima
         name = str(file) if shared else file.name
         if file.suffix.lower() in VIDEO_SUFFIXES:
             readers |= _video_readers(file, name, every)
+        elif is_bag(file):
+            readers |= _bag_readers(Bag(file, topic), name, every)
         else:
             readers[name] = _reader(file)
     if not readers:
@@ -108,7 +116,7 @@ def decoded(path: Path | str, refuse: Refusal) -> np.ndarray:
 def _expanded(path: Path | str) -> list[Path]:
     """The files a path stands for; empty where there are none."""
     place = Path(path).expanduser()
-    if place.is_dir():
+    if place.is_dir() and not is_bag(place):
         return [
             file
             for file in place.iterdir()
@@ -178,29 +186,51 @@ def _eight_bits(path: Path | str, image: np.ndarray) -> Image:
 
 
 def _video_readers(file: Path, name: str, every: int | None) -> dict[str, Callable[[], Image]]:
-    """Chosen frames, kept losslessly compressed: seeking in a video is not exact."""
+    """Chosen frames of a video."""
     video = open_video(file, UnreadableImage)
-    try:
-        total = int(video.get(cv2.CAP_PROP_FRAME_COUNT))
-        stretch = every or max(1, total // VIDEO_PICTURES)
-        kept: dict[int, tuple[float, int, bytes]] = {}
-        index = 0
+
+    def frames() -> Iterator[Callable[[], Image | None]]:
         while video.grab():
-            place = index // stretch
-            if every is None or index % every == 0:
-                readable, frame = video.retrieve()
-                if readable:
-                    score = 0.0 if every else _sharpness(frame)
-                    if place not in kept or score > kept[place][0]:
-                        kept[place] = (score, index, cv2.imencode(".png", frame)[1].tobytes())
-                    if every is None and len(kept) > 2 * VIDEO_PICTURES:  # longer than its header says
-                        stretch *= 2
-                        kept = _merged(kept)
-            index += 1
+            yield retrieved
+
+    def retrieved() -> Image | None:
+        readable, frame = video.retrieve()
+        return frame if readable else None
+
+    try:
+        readers = _chosen(frames(), name, int(video.get(cv2.CAP_PROP_FRAME_COUNT)), every)
     finally:
         video.release()
-    if not kept:
+    if not readers:
         raise UnreadableImage(file, "no frame of this video can be decoded")
+    return readers
+
+
+def _bag_readers(bag: Bag, name: str, every: int | None) -> dict[str, Callable[[], Image]]:
+    """Chosen pictures of a bag's topic."""
+    return _chosen((decode for _, decode in bag.pictures()), name, bag.frame_count, every)
+
+
+def _chosen(
+    frames: Iterable[Callable[[], Image | None]], name: str, total: int, every: int | None
+) -> dict[str, Callable[[], Image]]:
+    """Every `every`-th frame, or the sharpest of each stretch, kept losslessly compressed.
+
+    Seeking in a video is not exact.
+    """
+    stretch = every or max(1, total // VIDEO_PICTURES)
+    kept: dict[int, tuple[float, int, bytes]] = {}
+    for index, decode in enumerate(frames):
+        frame = decode() if every is None or index % every == 0 else None
+        if frame is None:
+            continue
+        place = index // stretch
+        score = 0.0 if every else _sharpness(frame)
+        if place not in kept or score > kept[place][0]:
+            kept[place] = (score, index, cv2.imencode(".png", frame)[1].tobytes())
+        if every is None and len(kept) > 2 * VIDEO_PICTURES:  # longer than its header says
+            stretch *= 2
+            kept = _merged(kept)
     return {f"{name}#{index:06d}": _decoder(data) for _, index, data in kept.values()}
 
 
@@ -223,7 +253,7 @@ def _decoder(data: bytes) -> Callable[[], Image]:
 
 def _sharpness(frame: Image) -> float:
     """Mean square of the Laplacian, which blur takes away first."""
-    grey = cv2.cvtColor(frame, cv2.COLOR_BGR2GRAY)
+    grey = cv2.cvtColor(frame, cv2.COLOR_BGR2GRAY) if frame.ndim == 3 else frame
     return float((cv2.Laplacian(grey, cv2.CV_32F) ** 2).mean())
 
 

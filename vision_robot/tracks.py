@@ -1,7 +1,7 @@
 """Where objects were, frame by frame: one table, the same for a tracker's answer and for the truth."""
 
 from array import array
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
@@ -67,6 +67,20 @@ class Tracks:
         """No rows."""
         none, pairs = np.zeros(0), np.zeros((0, 2))
         return cls(none, none, none, pairs, np.zeros((0, 4)), none, pairs, none, pairs, pairs)
+
+    @classmethod
+    def joined(cls, parts: "Iterable[Tracks]") -> "Tracks":
+        """The rows of several tables with the same further columns, one after the other."""
+        some = [part for part in parts if len(part)]
+        if not some:
+            return cls.empty()
+        columns = {
+            one.name: np.concatenate([getattr(part, one.name) for part in some])
+            for one in fields(cls)
+            if one.name != "extra"
+        }
+        extra = {name: np.concatenate([part.extra[name] for part in some]) for name in some[0].extra}
+        return cls(**columns, extra=extra)
 
     @property
     def ids(self) -> Int[Array, "k"]:

@@ -7,16 +7,28 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from vision_robot_cli import completions
+
 if TYPE_CHECKING:
     from vision_robot.arm import Arm, Task
 
 __all__ = ["ArmOption", "ArmSource", "Base", "Limit", "TaskName", "Tool", "Wrist", "arm_of", "task_of"]
 
 ArmSource = Annotated[
-    str, typer.Argument(metavar="ARM", help="MJCF or URDF file, or column: the arm that comes with the tool.")
+    str,
+    typer.Argument(
+        metavar="ARM",
+        help="MJCF or URDF file, or column: the arm that comes with the tool.",
+        autocompletion=completions.arms,
+    ),
 ]
 ArmOption = Annotated[
-    str, typer.Option("--arm", help="MJCF or URDF file, or column: the arm that comes with the tool.")
+    str,
+    typer.Option(
+        "--arm",
+        help="MJCF or URDF file, or column: the arm that comes with the tool.",
+        autocompletion=completions.arms,
+    ),
 ]
 Tool = Annotated[str | None, typer.Option("--tool", help="Site (MJCF) or link (URDF) that is the tool {T}.")]
 Wrist = Annotated[str | None, typer.Option("--wrist", help="Site, body or link that is the wrist {W}.")]

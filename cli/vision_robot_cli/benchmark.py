@@ -9,6 +9,8 @@ from vision_robot_cli.options import Json, Report, Seed
 
 __all__ = ["benchmark"]
 
+SEEDS, QUICK_SEEDS = 12, 2
+
 
 def benchmark(
     suite: Annotated[str, typer.Argument(help="calibration, trackers, flow, ik, grasp or all.")] = "all",
@@ -18,10 +20,27 @@ def benchmark(
     methods: Annotated[
         list[str] | None, typer.Option("--method", help="Only this method. May be repeated.")
     ] = None,
-    seeds: Annotated[int, typer.Option(help="Seeds of every scene; fewer than 8 settle little.")] = 10,
+    seeds: Annotated[
+        int | None,
+        typer.Option(help="Seeds of every scene, else 12, quick 2; fewer than 8 settle little."),
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Fewer scenes and methods: minutes.")] = False,
+    peers: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--peer", help="Suite trackers: also NAME=COMMAND, a program with the places {video} and {out}."
+        ),
+    ] = None,
+    data: Annotated[
+        Path | None,
+        typer.Option(help="Your own labelled data instead of rendered: a sequence, or a folder of them."),
+    ] = None,
     frames: Annotated[int | None, typer.Option(help="Frames of every video; else the suite's own.")] = None,
     size: Annotated[str | None, typer.Option(help="Size of the pictures, such as 640x480.")] = None,
     workers: Annotated[int, typer.Option(help="Processes on this machine.")] = 1,
+    time_limit: Annotated[
+        float, typer.Option(help="Seconds after which one method on one scene is ended as failed.")
+    ] = 600,
     scheduler: Annotated[
         str | None, typer.Option(help="A Dask cluster to run on instead: tcp://host:port.")
     ] = None,
@@ -33,6 +52,9 @@ def benchmark(
         Path, typer.Option("-o", "--out", help="Folder of results, where a run that was cut short goes on.")
     ] = Path("benchmark"),
     report: Report = None,
+    tables: Annotated[
+        Path | None, typer.Option(help="Folder for scores as CSV and JSON, summaries as CSV and LaTeX.")
+    ] = None,
     seed: Seed = 0,
     json: Json = False,
 ) -> None:
@@ -43,7 +65,7 @@ def benchmark(
     from vision_robot.evaluate.score import read_scores
     from vision_robot.files import check_place
     from vision_robot_cli import benchmark_output
-    from vision_robot_cli.benchmark_run import run_suites
+    from vision_robot_cli.benchmark_run import named_programs, run_suites
     from vision_robot_cli.output import emit_json
     from vision_robot_cli.quantities import whole_pair
     from vision_robot_synth.suites import Plan
@@ -51,17 +73,25 @@ def benchmark(
     before = read_scores(baseline) if baseline else []
     if report:
         check_place(report)
+    if tables:
+        check_place(tables / "scores.csv")
     plan = Plan(
         tuple(scenes or ()),
         tuple(methods or ()),
-        seeds,
+        seeds if seeds is not None else (QUICK_SEEDS if quick else SEEDS),
         seed,
         frames,
         whole_pair(size, "--size") if size else None,
+        quick,
+        named_programs(peers or ()),
     )
-    runs = run_suites(suite, plan, out, workers=workers, scheduler=scheduler)
+    runs = run_suites(
+        suite, plan, out, workers=workers, scheduler=scheduler, patience_s=time_limit, data=data
+    )
     if report:
         benchmark_output.write_reports(runs, report, seed)
+    if tables:
+        benchmark_output.write_tables(runs, tables)
     if json:
         emit_json("benchmark", benchmark_output.as_json(runs))
     else:

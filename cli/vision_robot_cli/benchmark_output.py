@@ -1,5 +1,6 @@
 """How `vr benchmark` shows its scores: text, JSON, pages, and against an older run."""
 
+import json
 import shlex
 import sys
 from collections.abc import Sequence
@@ -7,13 +8,15 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from vision_robot.evaluate.answer import answer, answer_words
 from vision_robot.evaluate.baseline import regressions
-from vision_robot.evaluate.conclusion import compare_methods, sentence
+from vision_robot.evaluate.conclusion import compare_methods
 from vision_robot.evaluate.score import Score, failures, scores
+from vision_robot.evaluate.sensitivity import without_variants
 from vision_robot_cli.benchmark_run import SuiteRun
-from vision_robot_cli.output import LimitMissed, note
+from vision_robot_cli.output import LimitMissed, note, plain
 
-__all__ = ["as_json", "as_text", "check_baseline", "write_reports"]
+__all__ = ["as_json", "as_text", "check_baseline", "write_reports", "write_tables"]
 
 
 def as_json(runs: Sequence[SuiteRun]) -> dict[str, Any]:
@@ -22,6 +25,7 @@ def as_json(runs: Sequence[SuiteRun]) -> dict[str, Any]:
         "scores": [asdict(score) for score in _all_scores(runs)],
         "failures": [asdict(one) for run in runs for one in failures(run.outcomes)],
         "conclusions": [text for run in runs for text in _conclusions(run)],
+        "comparisons": [one for run in runs for one in _comparisons(run)],
     }
 
 
@@ -39,7 +43,8 @@ def as_text(runs: Sequence[SuiteRun]) -> str:
             lines.append(f"    {score.method:<22} {_interval(score)}")
         lines += [f"  failed: {one.scene}, {one.method}, seed {one.seed}: {one.reason}"
                   for one in failures(run.outcomes)]  # fmt: skip
-        lines += [f"  {text}" for text in _conclusions(run)]
+        overall, *by_scene = _conclusions(run) or ["No method has a figure."]
+        lines += [f"  {text}" for text in (*by_scene, overall)]  # last what is read first
     return "\n".join(lines)
 
 
@@ -58,8 +63,29 @@ def write_reports(runs: Sequence[SuiteRun], path: Path, seed: int) -> None:
             threshold=run.suite.threshold,
             command=command,
             seed=seed,
+            timing=run.suite.timing,
+            axes=run.suite.axes,
         )
         write_page(page, place)
+
+
+def write_tables(runs: Sequence[SuiteRun], folder: Path) -> None:
+    """All scores, and each suite's summary, for a paper or another program."""
+    from vision_robot.files import write_text
+    from vision_robot.report.benchmark_answer import summary_table
+    from vision_robot.report.benchmark_files import scores_csv, table_csv, table_latex
+
+    write_text(folder / "scores.csv", scores_csv(_all_scores(runs)))
+    content = {"schema": "vr.benchmark/1", **plain(as_json(runs))}
+    write_text(folder / "scores.json", json.dumps(content, indent=1, allow_nan=False) + "\n")
+    for run in runs:
+        usual = without_variants(run.outcomes)
+        found = answer(usual, run.suite.metric)
+        if found is not None:
+            table = summary_table(usual, found)
+            name = f"summary-{run.suite.name}"
+            write_text(folder / f"{name}.csv", table_csv(table))
+            write_text(folder / f"{name}.tex", table_latex(table, label=f"tab:{run.suite.name}"))
 
 
 def check_baseline(runs: Sequence[SuiteRun], before: Sequence[Score]) -> None:
@@ -82,10 +108,29 @@ def _all_scores(runs: Sequence[SuiteRun]) -> list[Score]:
 
 
 def _conclusions(run: SuiteRun) -> list[str]:
-    """All pairs of methods on every scene by the suite's metric."""
-    scenes = dict.fromkeys(outcome.cell.scene for outcome in run.outcomes)
+    """What may be said over all scenes, then scene by scene."""
+    usual, metric = without_variants(run.outcomes), run.suite.metric
+    scenes = list(dict.fromkeys(outcome.cell.scene for outcome in usual))
+    asked = [None, *(scenes if len(scenes) > 1 else ())]
+    found = [answer(usual, metric, scene) for scene in asked]
+    return [" ".join(text for _, text in answer_words(one)) for one in found if one is not None]
+
+
+def _comparisons(run: SuiteRun) -> list[dict[str, Any]]:
+    """All pairs over all scenes, in figures."""
+    pairs = compare_methods(without_variants(run.outcomes), run.suite.metric)
+    keys = ("scene", "better", "worse", "p", "verdict", "seeds_needed")
     return [
-        sentence(pair) for scene in scenes for pair in compare_methods(run.outcomes, run.suite.metric, scene)
+        {
+            "suite": run.suite.name,
+            "metric": run.suite.metric,
+            **{key: getattr(one, key) for key in keys},
+            "difference": one.difference.value,
+            "low": one.difference.low,
+            "high": one.difference.high,
+            "seeds": one.difference.n,
+        }
+        for one in pairs
     ]
 
 

@@ -1,6 +1,6 @@
 """Running the suites that `vr benchmark` names."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from vision_robot.files import check_place
 from vision_robot_cli.output import note, ticking
 from vision_robot_synth.suites import SUITES, Plan, Suite, suite_named
 
-__all__ = ["SuiteRun", "run_suites"]
+__all__ = ["SuiteRun", "named_programs", "run_suites"]
 
 ALL = "all"
 
@@ -23,11 +23,22 @@ class SuiteRun:
     outcomes: Sequence[Outcome]
 
 
-def run_suites(name: str, plan: Plan, folder: Path, *, workers: int, scheduler: str | None) -> list[SuiteRun]:
-    """One suite, or all of them in the registry's order, results kept in `folder`."""
+def run_suites(
+    name: str,
+    plan: Plan,
+    folder: Path,
+    *,
+    workers: int,
+    scheduler: str | None,
+    patience_s: float,
+    data: Path | None = None,
+) -> list[SuiteRun]:
+    """One suite, on `data` where that is given, or all in the registry's order; results kept in `folder`."""
     if name == ALL and (plan.scenes or plan.methods):
         raise BadParameter("suite", name, f"one of {', '.join(SUITES)} where --scene or --method is given")
-    suites = [suite_named(one) for one in (SUITES if name == ALL else [name])]
+    if name == ALL and data is not None:
+        raise BadParameter("suite", name, f"one of {', '.join(SUITES)} where --data is given")
+    suites = [suite_named(one, data) for one in (SUITES if name == ALL else [name])]
     check_place(folder / "results")
     store, runs = Store(folder), []
     for suite in suites:
@@ -36,6 +47,19 @@ def run_suites(name: str, plan: Plan, folder: Path, *, workers: int, scheduler: 
         if known:
             note(f"{suite.name}: {known} of {len(cells)} cells are known already, in {folder}")
         with ticking(suite.name) as tick:
-            outcomes = run_sweep(cells, store, workers=workers, scheduler=scheduler, progress=tick)
+            outcomes = run_sweep(
+                cells, store, workers=workers, scheduler=scheduler, patience_s=patience_s, progress=tick
+            )
         runs.append(SuiteRun(suite, outcomes))
     return runs
+
+
+def named_programs(told: Iterable[str]) -> dict[str, str]:
+    """Command lines by name, from NAME=COMMAND. Raises BadParameter."""
+    programs = {}
+    for text in told:
+        name, equals, command = text.partition("=")
+        if not (equals and name and "{video}" in command and "{out}" in command) or ":" in name:
+            raise BadParameter("--peer", text, "NAME=COMMAND, the command with the places {video} and {out}")
+        programs[name] = command
+    return programs

@@ -5,7 +5,18 @@ from typing import Annotated
 
 import typer
 
-from vision_robot_cli.options import BoardName, BoardOption, BoardSize, Json, Out, Report, Seed, Square
+from vision_robot_cli import completions
+from vision_robot_cli.options import (
+    BoardName,
+    BoardOption,
+    BoardSize,
+    Json,
+    Out,
+    Report,
+    Seed,
+    Square,
+    Topic,
+)
 
 __all__ = ["calibrate"]
 
@@ -14,15 +25,20 @@ def calibrate(
     images: Annotated[
         list[str] | None,
         typer.Argument(
-            help="Photos, folders, quoted patterns or one video; nothing: a rendered set with truth."
+            help="Photos, folders, quoted patterns, a video or ROS bag; nothing: a rendered set with truth."
         ),
     ] = None,
+    topic: Topic = None,
     board: BoardName = "chessboard",
     size: BoardSize = "9x6",
     square: Square = "25mm",
     board_option: BoardOption = None,
     model: Annotated[
-        str, typer.Option(help="pinhole, brown5, brown8 or fisheye; auto: by views held out.")
+        str,
+        typer.Option(
+            help="pinhole, brown5, brown8 or fisheye; auto: by views held out.",
+            autocompletion=completions.models,
+        ),
     ] = "brown5",
     skew: Annotated[bool, typer.Option("--skew", help="Estimate the skew of the pixel axes too.")] = False,
     fix: Annotated[
@@ -52,7 +68,12 @@ def calibrate(
     ] = None,
     out: Out = None,
     file_format: Annotated[
-        str | None, typer.Option("--format", help="Format of --out; else told by its name.")
+        str | None,
+        typer.Option(
+            "--format",
+            help="Format of --out; else told by its name.",
+            autocompletion=completions.camera_formats,
+        ),
     ] = None,
     report: Report = None,
     seed: Seed = 0,
@@ -61,6 +82,7 @@ def calibrate(
     """Calibrate a camera, and say how well it is known.
 
     Example: vr calibrate photos/*.jpg --size 9x6 --square 25mm -o camera.yaml --report camera.html
+    Example: vr calibrate run.mcap --topic /camera/image_raw --size 9x6 --square 25mm -o camera.yaml
     """
     from vision_robot.files import check_place
     from vision_robot.formats import check_writable
@@ -80,7 +102,7 @@ def calibrate(
     else:
         chosen = target(board, size, square, board_option or ())
         given = (
-            calibration_input.from_pictures(images, chosen)
+            calibration_input.from_pictures(images, chosen, topic)
             if images
             else calibration_input.rendered(chosen, views, seed)
         )

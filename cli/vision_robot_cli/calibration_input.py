@@ -106,9 +106,9 @@ def from_corner_files(
     return CalibrationInput(str(folder), corners, points, size, size_assumed=image_size is None)
 
 
-def from_pictures(paths: Sequence[str], board: Board) -> CalibrationInput:
-    """Photos, folders, patterns or a video."""
-    pictures = open_images(paths)
+def from_pictures(paths: Sequence[str], board: Board, topic: str | None = None) -> CalibrationInput:
+    """Photos, folders, patterns, a video or a ROS bag."""
+    pictures = open_images(paths, topic=topic)
     return _detected(", ".join(paths), pictures, board)
 
 
@@ -125,12 +125,12 @@ def rendered(board: Board, views: int, seed: int) -> CalibrationInput:
     return replace(given, truth=truth.camera, seconds={**seconds, **given.seconds})
 
 
-def rendered_folder(folder: Path, views: int, seed: int) -> CalibrationInput:
-    """The same, kept as a dataset on disk, where a second run finds it again."""
+def rendered_folder(folder: Path, views: int, seed: int, camera: Camera | None = None) -> CalibrationInput:
+    """The same, kept as a dataset on disk, where a second run finds it again; by any `camera`."""
     from vision_robot_synth.calibration import calibration_set
     from vision_robot_synth.calibration_folder import write_calibration_set
 
-    truth = calibration_set(views=views, seed=seed)
+    truth = calibration_set(camera, views=views, seed=seed)
     start = perf_counter()
     note(f"rendering {views} views into {folder}")
     write_calibration_set(truth, folder)

@@ -128,6 +128,10 @@ COMMANDS: dict[str, Command | Group] = {
         "vision_robot_cli.pick:pick",
         "Pick and place in MuJoCo's physics, open or closed loop, with a score and an error budget.",
     ),
+    "schema": Command(
+        "vision_robot_cli.schema:schema",
+        "The JSON Schema of a command's --json, or of a file that this tool writes.",
+    ),
     "benchmark": Command(
         "vision_robot_cli.benchmark:benchmark",
         "Scenes x methods x seeds -> scores with confidence intervals, ours beside the peers.",

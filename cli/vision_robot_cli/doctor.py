@@ -20,9 +20,9 @@ def doctor(
 ) -> None:
     """What works on this machine, with a real test render; and the command that mends the rest.
 
-    Ends with 1 where something needed is broken. Example:
+    Ends with 1 where something needed is broken.
 
-        vr doctor --json
+    Example: vr doctor --json
     """
     from vision_robot.machine import Status, examine
 

@@ -52,7 +52,8 @@ def ik_solve(
 ) -> None:
     """Joint values that bring the tool to goal poses, or why none do.
 
-    Examples: vr ik solve --position 350,100,150mm --yaw 30deg; vr ik solve goals.csv -o joints.csv
+    Example: vr ik solve --position 350,100,150mm --yaw 30deg
+    Example: vr ik solve goals.csv -o joints.csv
     """
     from vision_robot.files import check_place
     from vision_robot_cli import ik_input, ik_output

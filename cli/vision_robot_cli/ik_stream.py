@@ -62,7 +62,9 @@ def ik_stream(
     anything goes wrong or Ctrl-C is pressed. The microcontroller must hold the same arm: fingerprints are
     compared.
 
-    Examples: vr ik stream joints.csv --port /dev/ttyACM0 --rate 0.5; vr ik stream p.csv --poses --port COM3
+    Example: vr ik stream moves.csv
+    Example: vr ik stream moves.csv --port /dev/ttyACM0 --rate 0.5
+    Example: vr ik stream goals.csv --poses --port COM3
     """
     from vision_robot.errors import BadParameter
     from vision_robot_cli import stream_table

@@ -15,6 +15,7 @@ import typer
 from typer.core import TyperGroup
 
 from vision_robot_cli.commands import COMMANDS, Command, Group
+from vision_robot_cli.examples import with_examples_whole
 from vision_robot_cli.output import LimitMissed
 
 __all__ = ["app", "main", "run"]
@@ -54,7 +55,7 @@ def load(target: str) -> Callable[..., Any]:
 def command_of(name: str, function: Callable[..., Any]) -> Any:
     """A function of Typer parameters as a command called `name`."""
     single = typer.Typer(add_completion=False, rich_markup_mode=None)
-    single.command(name, epilog=DEBUG_HELP)(function)
+    single.command(name, help=with_examples_whole(function.__doc__ or ""), epilog=DEBUG_HELP)(function)
     return typer.main.get_command(single)
 
 
@@ -81,7 +82,6 @@ def group_of(name: str, group: Group) -> Any:
 
 app = typer.Typer(
     cls=LazyGroup,
-    add_completion=False,
     rich_markup_mode=None,
     invoke_without_command=True,
     epilog=DEBUG_HELP,

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from vision_robot_cli import completions
+
 __all__ = [
     "BoardName",
     "BoardOption",
@@ -17,10 +19,16 @@ __all__ = [
     "Seed",
     "Square",
     "Synthetic",
+    "Topic",
 ]
 
 BoardName = Annotated[
-    str, typer.Option("--board", help="chessboard, charuco, circles, acircles or aprilgrid.")
+    str,
+    typer.Option(
+        "--board",
+        help="chessboard, charuco, circles, acircles or aprilgrid.",
+        autocompletion=completions.boards,
+    ),
 ]
 BoardSize = Annotated[
     str,
@@ -50,4 +58,7 @@ CameraName = Annotated[
 ]
 Synthetic = Annotated[
     bool, typer.Option("--synthetic", help="Pictures rendered in MuJoCo, the result beside the truth.")
+]
+Topic = Annotated[
+    str | None, typer.Option("--topic", help="Topic of a ROS bag, where several of it hold pictures.")
 ]

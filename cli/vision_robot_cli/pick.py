@@ -1,10 +1,11 @@
 """`vr pick`: episodes of pick and place in the MuJoCo cell."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from vision_robot_cli.options import Json, Seed
+from vision_robot_cli.options import Json, Report, Seed
 
 __all__ = ["pick"]
 
@@ -23,11 +24,18 @@ def pick(
         ),
     ] = None,
     budget: Annotated[
-        bool, typer.Option("--budget", help="Also share the error out among the stages (12 s a seed).")
+        bool,
+        typer.Option(
+            "--budget", help="Also share the error out among the stages, foretold and measured (2 s a seed)."
+        ),
     ] = False,
     min_success: Annotated[
         float | None, typer.Option(help="Exit with 3 when the share of grasps is below this.")
     ] = None,
+    video: Annotated[
+        Path | None, typer.Option(help="Film the first episode, what is believed drawn in: pick.mp4.")
+    ] = None,
+    report: Report = None,
     workers: Annotated[int, typer.Option(help="Processes.")] = 1,
     seed: Seed = 0,
     json: Json = False,
@@ -36,11 +44,20 @@ def pick(
 
     Example: vr pick --episodes 20 --loop look-move-look --fault camera-rotation=0.5deg
     """
-    from vision_robot_cli import pick_output
+    from vision_robot.files import check_place
+    from vision_robot_cli import pick_film, pick_output, pick_report
     from vision_robot_cli.output import check_least, emit_json
     from vision_robot_cli.pick_run import pick_run
 
+    if report:
+        check_place(report)
+    if video:
+        pick_film.check_film(video)
     run = pick_run(episodes, loop, tracker, options or (), fault or (), budget, workers, seed)
+    if video:
+        pick_film.write_film(run.world, run.plan, seed, video)
+    if report:
+        pick_report.write_report(run, report, seed)
     if json:
         emit_json("pick", pick_output.as_json(run))
     else:

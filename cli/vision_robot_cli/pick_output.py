@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from vision_robot.evaluate.attribution import Attribution
 from vision_robot.evaluate.statistics import wilson_interval
 from vision_robot.pick.episode import RUNGS, Episode
 from vision_robot.pick.summary import Spread, summary_of
+from vision_robot_cli import pick_budget
 from vision_robot_cli.pick_run import PickRun
 
 __all__ = ["as_json", "as_text", "grasp_share"]
@@ -35,7 +35,7 @@ def as_json(run: PickRun) -> dict[str, Any]:
         "place_error_mm": _scaled(found.placing_m, 1000),
         "seconds": _scaled(found.seconds, 1),
         "looks": _scaled(found.looks, 1),
-        "error_budget": None if run.budget is None else _budget_mm(run.budget),
+        "error_budget": None if run.budget is None else pick_budget.as_json(run.budget),
         "each": [_row(episode) for episode in run.episodes],
     }
 
@@ -62,8 +62,7 @@ def as_text(run: PickRun) -> str:
             median, p95 = scale * spread.median, scale * spread.p95
             lines.append(f"  {name:<15} median {median:.2f} {unit}, 95 % within {p95:.2f} {unit}")
     if run.budget is not None:
-        lines.append("  of the millimetres at closing:")
-        lines += [f"    {stage:<12} {share:6.2f} mm" for stage, share in _budget_mm(run.budget).items()]
+        lines += pick_budget.as_text(run.budget)
     lines += [f"  seed {one.seed}: {one.failure}" for one in run.episodes if one.failure]
     return "\n".join(lines)
 
@@ -79,14 +78,6 @@ def _row(episode: Episode) -> dict[str, Any]:
         "seen_error_mm": 1000 * episode.seen_error_m,
         "looks": episode.looks,
         "failure": episode.failure,
-    }
-
-
-def _budget_mm(budget: Attribution) -> dict[str, float]:
-    return {
-        **{stage: 1000 * share for stage, share in budget.share.items()},
-        "unexplained": 1000 * budget.floor,
-        "total": 1000 * budget.total,
     }
 
 

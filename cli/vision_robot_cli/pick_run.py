@@ -2,24 +2,23 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from vision_robot.errors import BadParameter
-from vision_robot.evaluate.attribution import Attribution, attribute, subsets
-from vision_robot.pick.budget import closing_errors
+from vision_robot.evaluate.error_budget import ErrorBudget
 from vision_robot.pick.closed_loop import LAWS
 from vision_robot.pick.episode import Episode
 from vision_robot.pick.episodes import Plan, run_episode
 from vision_robot.pick.faults import FAULTS, with_fault, with_lens
-from vision_robot.pick.knowledge import STAGES
 from vision_robot.pick.world import World, ordinary_world
 from vision_robot_cli.output import progress
+from vision_robot_cli.pick_budget import budget_of, in_processes
 from vision_robot_cli.quantities import quantity
 
 __all__ = ["PickRun", "pick_run"]
 
 CLOSED = "closed"
-BUDGET_SEEDS = 5
 
 
 @dataclass(frozen=True)
@@ -27,9 +26,10 @@ class PickRun:
     """What was asked and what happened."""
 
     plan: Plan
+    world: World
     faults: Sequence[str]
     episodes: Sequence[Episode]
-    budget: Attribution | None
+    budget: ErrorBudget | None
 
 
 def pick_run(
@@ -58,18 +58,12 @@ def pick_run(
     episodes = list(progress(_episodes(world, plan, seeds, workers), "picking", total=count))
     budget = None
     if with_budget:
-        errors = closing_errors(world, plan, seeds[:BUDGET_SEEDS], list(subsets(STAGES)))
-        budget = attribute(STAGES, {stages: float(values.mean()) for stages, values in errors.items()})
-    return PickRun(plan, faults, episodes, budget)
+        budget = budget_of(world, plan, seeds, workers)
+    return PickRun(plan, world, faults, episodes, budget)
 
 
 def _episodes(world: World, plan: Plan, seeds: Sequence[int], workers: int) -> Iterable[Episode]:
-    if workers == 1:
-        return (run_episode(world, plan, one) for one in seeds)
-    from joblib import Parallel, delayed
-
-    run: Any = Parallel(n_jobs=workers, backend="loky", return_as="generator")
-    return run(delayed(run_episode)(world, plan, one) for one in seeds)
+    return in_processes(partial(run_episode, world, plan), seeds, workers)
 
 
 def _options(words: Sequence[str]) -> Mapping[str, Any]:

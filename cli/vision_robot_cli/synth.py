@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from vision_robot_cli import completions
 from vision_robot_cli.options import Json, Seed
 
 __all__ = ["synth"]
@@ -12,7 +13,10 @@ __all__ = ["synth"]
 
 def synth(
     recipe: Annotated[
-        str | None, typer.Argument(help="Name of a recipe, or a *.toml file of your own.")
+        str | None,
+        typer.Argument(
+            help="Name of a recipe, or a *.toml file of your own.", autocompletion=completions.recipes
+        ),
     ] = None,
     out: Annotated[
         Path | None, typer.Option("-o", "--out", help="Folder of the dataset; else named after the recipe.")
@@ -32,9 +36,10 @@ def synth(
 ) -> None:
     """Render a dataset: frames, and the truth about every object in them to the last pixel.
 
-    A run that was cut short goes on where it stopped. Example:
+    A run that was cut short goes on where it stopped.
 
-        vr synth single-rod -o rod --frames 120 --workers 2 --preview
+    Example: vr synth single-rod -o rod --frames 120 --workers 2 --preview
+    Example: vr synth --list
     """
     from vision_robot.errors import BadParameter
     from vision_robot_cli import synth_output

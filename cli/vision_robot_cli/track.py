@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from vision_robot_cli.options import Json, Out, Report
+from vision_robot_cli.options import Json, Out, Report, Topic
 from vision_robot_cli.track_options import (
     CameraFile,
     Color,
@@ -29,7 +29,8 @@ __all__ = ["camera", "video"]
 
 
 def video(
-    file: Annotated[Path, typer.Argument(help="The video.")],
+    file: Annotated[Path, typer.Argument(help="The video, or a ROS bag.")],
+    topic: Topic = None,
     tracker: TrackerName = "background",
     color: Color = None,
     pick: Pick = None,
@@ -52,8 +53,9 @@ def video(
     """Track objects in a video from a fixed camera: -o tracks.csv, tracks.json or mot.txt.
 
     Example: vr track video belt.mp4 --tracker rgb --color red -o tracks.csv --report tracks.html
+    Example: vr track video run.mcap --topic /camera/image_raw -o tracks.csv
     """
-    from vision_robot.video import Video
+    from vision_robot.track.sources import open_recording
     from vision_robot_cli.track_input import plane_of, tracker_of
     from vision_robot_cli.track_run import Outputs
 
@@ -64,7 +66,7 @@ def video(
     outputs = Outputs(out, overlay, report, rerun)
     outputs.check()
     session = _session(chosen, plane_of(camera, plane), height, max_gap, confirm, max_objects)
-    source = Video(file)
+    source = open_recording(file, topic)
     _through(session, source, str(file), outputs, source.fps, source.frame_count, json)
 
 

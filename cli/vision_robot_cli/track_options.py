@@ -5,8 +5,15 @@ from typing import Annotated
 
 import typer
 
+from vision_robot_cli import completions
+
 TrackerName = Annotated[
-    str, typer.Option("--tracker", help="background, rgb, optical-flow, their -plain forms, or a plug-in.")
+    str,
+    typer.Option(
+        "--tracker",
+        help="background, rgb, optical-flow, their -plain forms, or a plug-in.",
+        autocompletion=completions.trackers,
+    ),
 ]
 Set = Annotated[
     list[str] | None,

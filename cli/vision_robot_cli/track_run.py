@@ -37,6 +37,10 @@ class Outputs:
             row_writer(self.rows)
         if self.overlay and self.overlay.suffix.lower() not in CODECS:
             raise BadParameter("--overlay", str(self.overlay), f"named *{', *'.join(CODECS)}")
+        if self.rerun:
+            from vision_robot_cli.track_rerun import check_rerun
+
+            check_rerun()
         for path in (self.rows, self.overlay, self.report, self.rerun):
             if path:
                 check_place(path)
@@ -141,7 +145,8 @@ class Run:
         if self.outputs.rerun:
             from vision_robot_cli.track_rerun import rerun_sink
 
-            sinks.append(rerun_sink(self.outputs.rerun))
+            sink = rerun_sink(self.outputs.rerun, lambda: self.session.tracker.mask)
+            sinks.append(stack.enter_context(sink))
         return sinks
 
     def _drawn(self, overlay: Overlay, step: Step) -> Image:

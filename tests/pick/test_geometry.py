@@ -1,5 +1,7 @@
 """From pixel to joints: the laws that each step of the chain obeys."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -13,9 +15,10 @@ from vision_robot.pick.calibrated import rigid_fit
 from vision_robot.pick.episode import miss_of
 from vision_robot.pick.goal import joints_for, station_from_grasp, upright
 from vision_robot.pick.knowledge import STAGES, Knowledge
-from vision_robot.pick.servoing import image_step, interaction_matrix
 from vision_robot.pick.sighting import Seen, sighting
 from vision_robot.pick.world import ordinary_world
+from vision_robot.sim.outline import area_moments, outline_of
+from vision_robot.sim.shapes import shape_named
 
 RNG = np.random.default_rng(0)
 ANGLE = st.floats(-np.pi, np.pi)
@@ -72,27 +75,6 @@ def test_joints_bring_the_tool_there_and_far_goals_are_refused():
         joints_for(solver, station, station_from_grasp(np.array([2.0, 0]), 0, 0.02), near)
 
 
-def test_the_interaction_matrix_is_the_derivative():
-    """Of the image of a still point, for a camera that moves by a small twist (v, w)."""
-    point, step = np.array([0.1, -0.2, 0.8]), 1e-6
-    x, y = point[:2] / point[2]
-    L = interaction_matrix(x, y, point[2])
-    for i in range(6):
-        twist = step * np.eye(6)[i]
-        moved = SE3.exp(twist).inverse().apply(point[None])[0]
-        assert np.allclose((moved[:2] / moved[2] - [x, y]) / step, L[:, i], atol=1e-5)
-
-
-def test_an_image_step_lands_where_it_should():
-    """Newton in the image: each step leaves a hundredth of the error, whatever the lens."""
-    point, goal = np.array([0.02, -0.05, 0.1]), np.array([-0.03, 0.04])
-    wanted = PLANE.pixels(goal[None], z_m=0.1)[0]
-    for _ in range(4):
-        pixel = PLANE.pixels(point[None, :2], z_m=0.1)[0]
-        point[:2] += image_step(CAMERA, LOOKING_DOWN, point, pixel, wanted)
-    assert np.allclose(point[:2], goal, atol=1e-7)
-
-
 def test_rigid_fit_undoes_a_motion():
     points, pose = RNG.normal(size=(5, 3)), SE3.exp(RNG.normal(size=6))
     found = rigid_fit(points, pose.apply(points))
@@ -124,3 +106,31 @@ def test_stages_are_replaced_by_the_truth():
     with pytest.raises(BadParameter, match="luck"):
         believed.corrected(truth, {"luck"})
     assert set(STAGES) >= {"calibration", "ik"}
+
+
+@given(ANGLE, st.floats(-0.1, 0.1), st.floats(-0.1, 0.1), st.sampled_from(["rod", "box", "disc"]))
+def test_a_body_is_found_by_its_outline_where_it_lies(yaw, x, y, shape):
+    """Near ends look larger, sides are seen besides tops: the hull tells by how much."""
+    size = {"rod": (0.12, 0.01), "box": (0.05, 0.03, 0.02), "disc": (0.04, 0.01)}[shape]
+    body = shape_named(shape, size, (0.8, 0.1, 0.1))
+    pose = SE3.from_rotvec(np.array([0, 0, yaw]), np.array([x, y, body.rest_m]))
+    polygon = outline_of((LOOKING_DOWN @ pose).apply(body.hull), CAMERA)
+    assert polygon is not None
+    moments = area_moments(polygon)
+    (major, minor), direction = moments.axes()
+    seen = Seen(moments.centroid, direction, float(major), float(minor), body.hull)
+    found = sighting(PLANE, seen, body.rest_m)
+    assert np.allclose(found.position_m, [x, y], atol=2e-5)
+    if shape != "disc":
+        assert abs((found.yaw_rad - yaw + np.pi / 2) % np.pi - np.pi / 2) < 1e-3
+
+
+def test_a_rod_that_points_at_the_camera_is_not_where_its_centroid_is():
+    body = shape_named("rod", (0.12, 0.01), (0.8, 0.1, 0.1))
+    pose = SE3.from_rotvec(np.zeros(3), np.array([0.08, 0.0, body.rest_m]))
+    polygon = outline_of((LOOKING_DOWN @ pose).apply(body.hull), CAMERA)
+    assert polygon is not None
+    moments = area_moments(polygon)
+    seen = Seen(moments.centroid, moments.axes()[1], 100.0, 8.0, body.hull)
+    assert abs(sighting(PLANE, seen, 0.005).position_m[0] - 0.08) < 2e-5
+    assert abs(sighting(PLANE, replace(seen, hull=None), 0.005).position_m[0] - 0.08) > 5e-4

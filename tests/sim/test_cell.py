@@ -143,6 +143,23 @@ def test_servos_hold_without_sag_and_follow():
     assert cell.joint_limits[0] == pytest.approx((0, 0.4))
 
 
+def test_who_watches_is_called_in_time_and_changes_nothing():
+    watched, alone = (Cell(CellDesign(items=(Item("rod", "rod", (0.12, 0.01), above_m=0.02),))) for _ in "ab")
+    times: list[float] = []
+    watched.watch(0.04, lambda: times.append(watched.time_s))
+    watched.advance(0.1)
+    watched.advance(0.1)
+    watched.watch(0.04, None)
+    watched.advance(0.1)
+    alone.advance(0.1)
+    alone.advance(0.1)
+    alone.advance(0.1)
+    assert np.allclose(times, [0.04, 0.08, 0.12, 0.16, 0.2], atol=1e-9)
+    assert (watched.data.qpos == alone.data.qpos).all()
+    with pytest.raises(BadParameter, match="positive"):
+        watched.watch(0.0, lambda: None)
+
+
 def test_the_label_moves_as_its_velocity_says():
     """Posed with joint rates, the label's velocity is the difference of its poses."""
     cell = Cell(CellDesign(arm=ArmMount(), base_from_station=SKEWED))

@@ -63,6 +63,9 @@ class Dataset:
     def __len__(self) -> int:
         return len(self.times_s)
 
+    def __iter__(self) -> Iterator[Frame]:
+        return self.frames()
+
     def frames(self, start: int = 0, stop: int | None = None) -> Iterator[Frame]:
         """Frames `start` to before `stop`, read one at a time.
 

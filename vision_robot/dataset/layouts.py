@@ -7,7 +7,7 @@ from vision_robot.dataset.dataset import Dataset
 from vision_robot.dataset.layout import Layout
 from vision_robot.errors import BadDataset, BadParameter
 
-__all__ = ["LAYOUTS", "open_dataset"]
+__all__ = ["LAYOUTS", "open_dataset", "recognised"]
 
 LAYOUTS: dict[str, str] = {
     "vr": "vision_robot.dataset.generated:LAYOUT",
@@ -32,9 +32,9 @@ def open_dataset(path: Path | str, layout: str | None = None) -> Dataset:
         raise BadDataset(path, "there is no such folder")
     if layout:
         return _read(layout, folder)
-    for name in LAYOUTS:
-        if _layout(name).recognises(folder):
-            return _read(name, folder)
+    name = recognised(folder)
+    if name is not None:
+        return _read(name, folder)
     marks = ", ".join(f"{_layout(name).mark} ({name})" for name in LAYOUTS)
     raise BadDataset(path, f"none of these is in it: {marks}")
 
@@ -44,6 +44,11 @@ def _read(name: str, folder: Path) -> Dataset:
         return _layout(name).read(folder)
     except OSError as error:  # such as names in its tables that are too long to be names
         raise BadDataset(folder, error.strerror or str(error)) from error
+
+
+def recognised(folder: Path) -> str | None:
+    """The layout a folder has, by the file that marks it."""
+    return next((name for name in LAYOUTS if _layout(name).recognises(folder)), None)
 
 
 def _layout(name: str) -> Layout:

@@ -6,8 +6,19 @@ as attributes so that a caller can act on it without parsing text.
 """
 
 from .arms import BadArm, BadGoal, BadPath, MissingLimits, UnknownStructure, Unreachable
-from .links import BadPort, CommandRefused, LinkMismatch, NoAnswer, NoScheduler, NothingSeen, PeerFailed
+from .links import (
+    BadPort,
+    CommandRefused,
+    LinkMismatch,
+    LostSight,
+    NoAnswer,
+    NoScheduler,
+    NothingSeen,
+    PeerFailed,
+    ServoAstray,
+)
 from .pictures import (
+    BadBag,
     BadDataset,
     BadFrame,
     BadRecipe,
@@ -46,6 +57,7 @@ from .views import (
 __all__ = [
     "AmbiguousPlane",
     "BadArm",
+    "BadBag",
     "BadCameraFile",
     "BadCornerFile",
     "BadDataset",
@@ -67,6 +79,7 @@ __all__ = [
     "DegenerateViews",
     "EdgeOnPlane",
     "LinkMismatch",
+    "LostSight",
     "MissingLimits",
     "MissingOpenGL",
     "MissingPackage",
@@ -79,6 +92,7 @@ __all__ = [
     "NothingSeen",
     "OffPlane",
     "PeerFailed",
+    "ServoAstray",
     "TooFewPoses",
     "TooFewViews",
     "TooLittleMotion",

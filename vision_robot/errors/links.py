@@ -68,3 +68,23 @@ class NothingSeen(VisionRobotError):
     def __init__(self, tracker: str, name: str):
         self.tracker, self.name = tracker, name
         super().__init__(f"tracker {tracker} does not see {name}")
+
+
+class LostSight(VisionRobotError):
+    """What a closed loop is guided by was not seen for too long, and what is known does not do without."""
+
+    def __init__(self, name: str, seconds: float, sigma_m: float):
+        self.name, self.seconds, self.sigma_m = name, seconds, sigma_m
+        known = f", and the place is known to {1e3 * sigma_m:.1f} mm only" if sigma_m < float("inf") else ""
+        super().__init__(f"{name} was out of sight for {seconds:.2g} s{known}")
+
+
+class ServoAstray(VisionRobotError):
+    """A closed loop did not bring its error below what it stops at."""
+
+    def __init__(self, law: str, seconds: float, error_m: float):
+        self.law, self.seconds, self.error_m = law, seconds, error_m
+        super().__init__(
+            f"the {law} loop did not settle in {seconds:.2g} s: {1e3 * error_m:.2g} mm are left; "
+            "lower the gain, or calibrate again"
+        )

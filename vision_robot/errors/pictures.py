@@ -43,6 +43,14 @@ class BadVideo(BadInput):
         super().__init__(f"{path} cannot be used as a video: {why}")
 
 
+class BadBag(BadInput):
+    """A recording of ROS cannot be used."""
+
+    def __init__(self, path: object, why: str):
+        self.path, self.why = str(path), why
+        super().__init__(f"{path} cannot be used as a ROS bag: {why}")
+
+
 class BadFrame(BadInput):
     """A frame does not belong into the video it was given for."""
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vision_robot.evaluate.conclusion import severity_curve
+from vision_robot.evaluate.metrics import metric_named
 from vision_robot.evaluate.statistics import Breakdown, breakdown_point
 from vision_robot.evaluate.sweep import Outcome
 from vision_robot.types import Array, Float
@@ -44,9 +45,13 @@ def dials_of(scenes: Sequence[str]) -> list[Dial]:
 def measured(
     dial: Dial, outcomes: Sequence[Outcome], metric: str, method: str, *, threshold: float = 0.5
 ) -> tuple[Float[Array, "k"], Float[Array, "seeds k"], Breakdown] | None:
-    """Severities, scores by seed and breakdown point of one method; None where it took no part."""
+    """Severities, scores by seed and breakdown point of one method; None where it took no part.
+
+    It breaks where its mean falls under `threshold`, or rises over it where lower is better.
+    """
     severities = np.array(dial.severities)
     scores = severity_curve(outcomes, metric, method, dial.scenes)
     if not len(scores):
         return None
-    return severities, scores, breakdown_point(severities, scores, threshold=threshold)
+    sign = 1 if metric_named(metric).better == "higher" else -1
+    return severities, scores, breakdown_point(severities, sign * scores, threshold=sign * threshold)

@@ -61,7 +61,10 @@ def scores(outcomes: Iterable[Outcome]) -> list[Score]:
         interval = clustered_interval(values.astype(float), seeds)
         if interval.n:
             metric = metric_named(name)
-            ends = (interval.value, interval.low, interval.high)
+            low, high = (
+                float(np.clip(end, metric.least, metric.most)) for end in (interval.low, interval.high)
+            )
+            ends = (interval.value, low, high)
             found.append(Score(suite, scene, method, name, *ends, metric.unit, metric.better, interval.n))
     return found
 

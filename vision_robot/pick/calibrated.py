@@ -6,14 +6,14 @@ from vision_robot.arm.ik import InverseKinematics
 from vision_robot.calibrate import Corners, Settings, calibrate
 from vision_robot.calibrate.boards import Chessboard
 from vision_robot.extrinsics.plane import fit_plane, on_station
-from vision_robot.geometry import SE3, KnownCamera
+from vision_robot.geometry import SE3, KnownCamera, skew
 from vision_robot.pick.goal import joints_for, station_from_grasp
 from vision_robot.pick.knowledge import Knowledge
 from vision_robot.pick.world import World
 from vision_robot.sim.viewpoints import board_poses
 from vision_robot.types import Array, Float
 
-__all__ = ["calibrated", "rigid_fit"]
+__all__ = ["BOARD", "ON_TABLE", "calibrated", "rigid_fit", "rigid_fit_covariance", "touched_station"]
 
 BOARD = Chessboard(9, 6, 0.025)
 VIEWS = 15
@@ -42,7 +42,8 @@ def calibrated(world: World, seed: int) -> Knowledge:
     station_from_board = on_station(ON_TABLE)
     on_table = _seen(world, world.view.cam_from_station @ station_from_board, "table", rng)
     plane = fit_plane(known, [on_table], points, station_from_board).plane
-    return Knowledge(plane, _touched(world, rng), world.arm)
+    station, covariance = touched_station(world, rng)
+    return Knowledge(plane, station, world.arm, covariance)
 
 
 def _seen(world: World, cam_from_board: SE3, name: str, rng: np.random.Generator) -> Corners:
@@ -53,8 +54,8 @@ def _seen(world: World, cam_from_board: SE3, name: str, rng: np.random.Generator
     return Corners(name, np.arange(len(real)), noisy, np.full(len(real), world.corner_noise_px))
 
 
-def _touched(world: World, rng: np.random.Generator) -> SE3:
-    """base_from_station from where the arm believes its tool is while it touches the marks."""
+def touched_station(world: World, rng: np.random.Generator) -> tuple[SE3, Float[Array, "6 6"]]:
+    """base_from_station and its covariance, from where the arm believes its tool is on the marks."""
     solver, base, near = InverseKinematics(world.arm), world.design.base_from_station, None
     believed = []
     for mark in MARKS:
@@ -64,7 +65,9 @@ def _touched(world: World, rng: np.random.Generator) -> SE3:
         # The tool is at the mark; where it is believed to be, the encoders tell.
         believed.append(world.arm.chain.base_from_tool(world.told_joints(near)).translation)
     noise = rng.normal(0, world.touch_noise_m, MARKS.shape)
-    return rigid_fit(MARKS, np.array(believed) + noise)
+    touched = np.array(believed) + noise
+    found = rigid_fit(MARKS, touched)
+    return found, rigid_fit_covariance(MARKS, touched, found)
 
 
 def rigid_fit(points: Float[Array, "n 3"], moved: Float[Array, "n 3"]) -> SE3:
@@ -73,3 +76,16 @@ def rigid_fit(points: Float[Array, "n 3"], moved: Float[Array, "n 3"]) -> SE3:
     U, _, Vt = np.linalg.svd((moved - other).T @ (points - middle))
     R = U @ np.diag([1, 1, np.linalg.det(U @ Vt)]) @ Vt
     return SE3(R, other - R @ middle)
+
+
+def rigid_fit_covariance(
+    points: Float[Array, "n 3"], moved: Float[Array, "n 3"], fitted: SE3
+) -> Float[Array, "6 6"]:
+    """Covariance of a rigid fit, (w [rad], dt [m]), its noise per axis taken from what the fit leaves."""
+    left = moved - fitted.apply(points)
+    variance = float((left**2).sum()) / (left.size - 6)
+    turned = points @ fitted.rotation.T
+    J = np.concatenate([-skew(turned), np.broadcast_to(np.eye(3), (len(points), 3, 3))], axis=2).reshape(
+        -1, 6
+    )
+    return variance * np.linalg.inv(J.T @ J)

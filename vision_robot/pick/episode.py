@@ -7,7 +7,7 @@ import numpy as np
 from vision_robot.geometry import SE3
 from vision_robot.types import Array, Float
 
-__all__ = ["RUNGS", "Episode", "Miss", "axis_angle", "miss_of"]
+__all__ = ["RUNGS", "Episode", "Look", "Miss", "axis_angle", "miss_of"]
 
 RUNGS = ("seen", "reached", "gripped", "lifted", "placed")
 """The ladder of success; each rung needs the one before."""
@@ -31,6 +31,21 @@ class Miss:
 
 
 @dataclass(frozen=True)
+class Look:
+    """One look of a closed loop on the way."""
+
+    time_s: float
+    error_m: float
+    """What was seen: length of the step that it asked for."""
+    height_m: float = np.nan
+    """Of the tool over the table, as believed."""
+    true_m: float = np.nan
+    """How far the tool really was off the thing in the plane of {S} when it looked."""
+    sigma_m: float = np.nan
+    """What all looks up to this one leave unknown of the thing's place, one standard deviation."""
+
+
+@dataclass(frozen=True)
 class Episode:
     """What happened; None where it did not come to that."""
 
@@ -39,6 +54,8 @@ class Episode:
     """Where the thing really lay."""
     station_from_place: SE3 = field(compare=False)
     """Where it was to be put."""
+    thing: str = ""
+    """Name of what was to be picked."""
     closing: Miss | None = None
     """Of the tool against the thing when the fingers began to close."""
     seen_error_m: float = np.nan
@@ -53,6 +70,8 @@ class Episode:
     seconds: float = np.nan
     """Simulated, from the first move to the last."""
     looks: int = 0
+    course: tuple[Look, ...] = ()
+    """How a closed loop converged."""
     failure: str | None = None
     """Why it ended early."""
 

@@ -24,11 +24,16 @@ class Fault:
 
 def _camera_rotation(world: World, size: float) -> World:
     """About the two axes across the line of sight alike, which moves everything in the picture."""
-    return replace(world, knock=SE3.from_rotvec(np.array([size, size, 0.0]) / np.sqrt(2), np.zeros(3)))
+    return _knocked(world, SE3.from_rotvec(np.array([size, size, 0.0]) / np.sqrt(2), np.zeros(3)))
 
 
 def _camera_translation(world: World, size: float) -> World:
-    return replace(world, knock=SE3(np.eye(3), np.array([size, size, 0.0]) / np.sqrt(2)))
+    return _knocked(world, SE3(np.eye(3), np.array([size, size, 0.0]) / np.sqrt(2)))
+
+
+def _knocked(world: World, again: SE3) -> World:
+    """One knock after the other."""
+    return replace(world, knock=again @ world.knock)
 
 
 def _joint_offset(world: World, size: float) -> World:
@@ -61,6 +66,11 @@ FAULTS: dict[str, Fault] = {
     ),
     "latency": Fault(
         "s", "time from a picture to its answer", lambda world, size: replace(world, latency_s=size)
+    ),
+    "lost-sight": Fault(
+        "",
+        "share of pictures in which the hand's label is not seen",
+        lambda world, size: replace(world, lost_sight=size),
     ),
 }
 """Name -> fault."""

@@ -1,11 +1,14 @@
 """What a robot's controller believes about its cell."""
 
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from vision_robot.arm import Arm
 from vision_robot.errors import BadParameter
 from vision_robot.geometry import SE3, Camera, WorkPlane
+from vision_robot.types import Array, Float
 
 __all__ = ["STAGES", "Knowledge"]
 
@@ -28,6 +31,10 @@ class Knowledge:
     plane: WorkPlane
     base_from_station: SE3
     arm: Arm
+    station_covariance: Float[Array, "6 6"] = field(default_factory=lambda: np.zeros((6, 6)), compare=False)
+    """Of base_from_station, a turn [rad] and a shift [m] in base axes."""
+    joint_covariance: Float[Array, "n n"] | None = field(default=None, compare=False)
+    """How well the arm's geometry is known, as errors of its joints [m, rad]; None: taken as drawn."""
 
     def corrected(self, truth: "Knowledge", stages: Collection[str]) -> "Knowledge":
         """The same with what `stages` mean replaced by the truth; tracking and control mean none of it."""
@@ -44,4 +51,6 @@ class Knowledge:
             plane=plane,
             base_from_station=moved.base_from_station,
             arm=truth.arm if "ik" in stages else self.arm,
+            station_covariance=moved.station_covariance,
+            joint_covariance=truth.joint_covariance if "ik" in stages else self.joint_covariance,
         )

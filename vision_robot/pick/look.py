@@ -1,24 +1,26 @@
 """Looking at the table: frames of the cell's camera through a tracker."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vision_robot.errors import NothingSeen
-from vision_robot.geometry import SE3
-from vision_robot.pick.sighting import Seen
+from vision_robot.errors import NothingSeen, VisionRobotError
+from vision_robot.geometry import SE3, WorkPlane
+from vision_robot.pick.sighting import Seen, expected_axes_px
 from vision_robot.pick.world import World
 from vision_robot.sim.cell import Cell
+from vision_robot.sim.cell_design import Item, StationCamera
+from vision_robot.sim.shapes import shape_named
 from vision_robot.sim.truth import TruthRenderer
 from vision_robot.track.blobs import Blobs
 from vision_robot.track.tracker import Tracker
-from vision_robot.types import Image
+from vision_robot.types import Array, Float, Image
 
-__all__ = ["Arrival", "Eye", "look"]
+__all__ = ["Arrival", "Eye", "Survey", "look", "recognised", "survey"]
 
 AWAY = SE3(np.eye(3), np.array([0.0, 0.0, 5.0]))
-"""Where an object waits before it arrives: behind the camera."""
+"""Where objects wait before they arrive: behind the camera."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,14 @@ class Arrival:
     sliding: int = 10
     still: int = 4
     distance_m: float = 0.06
+
+
+@dataclass(frozen=True)
+class Survey:
+    """What a tracker says of the thing that is wanted, and of all else that it sees."""
+
+    thing: Seen
+    others: tuple[Seen, ...] = ()
 
 
 ARRIVALS = {
@@ -50,10 +60,24 @@ class Eye:
     def __init__(self, cell: Cell, world: World, seed: int):
         self._renderer = TruthRenderer(cell, world.view_now)
         self._noise, self._rng = world.image_noise, np.random.default_rng([seed, 2])
+        self._state, self._clean = b"", np.zeros((0, 0, 3), dtype=np.uint8)
 
     def picture(self) -> Image:
         """What the controller gets to see."""
-        return self._spoilt(self._renderer.picture())
+        return self._spoilt(self.plain())
+
+    def plain(self) -> Image:
+        """The same without the sensor's noise, for who only watches: no chance is used up."""
+        # Where nothing has moved since the last picture, the same one would be drawn again.
+        data = self._renderer.cell.data
+        state = data.qpos.tobytes() + data.mocap_pos.tobytes() + data.mocap_quat.tobytes()
+        if state != self._state or not self._renderer.cell.light_is_as_designed:
+            self._state, self._clean = state, self._renderer.picture()
+        return self._clean
+
+    def through(self, view: StationCamera) -> Image:
+        """What a camera elsewhere would see, for who only watches."""
+        return self._renderer.through(view)
 
     @property
     def time_s(self) -> float:
@@ -88,31 +112,90 @@ class Eye:
 
 
 def look(
-    cell: Cell, eye: Eye, tracker: Tracker, name: str, world: World, arrival: Arrival | None = None
+    cell: Cell,
+    eye: Eye,
+    tracker: Tracker,
+    name: str,
+    world: World,
+    arrival: Arrival | None = None,
+    plane: WorkPlane | None = None,
 ) -> Seen:
-    """Show the tracker how the thing called `name` arrives, and take what it says in the end.
+    """What `survey` says of the thing called `name`."""
+    return survey(cell, eye, tracker, name, world, arrival, plane).thing
 
-    Raises NothingSeen where it says nothing. Of several blobs the surest and largest is taken.
+
+def survey(
+    cell: Cell,
+    eye: Eye,
+    tracker: Tracker,
+    name: str,
+    world: World,
+    arrival: Arrival | None = None,
+    plane: WorkPlane | None = None,
+) -> Survey:
+    """Show the tracker how everything arrives, and take what it says in the end.
+
+    Raises NothingSeen where it says nothing. Which blob is the thing called `name` is told by kind (its
+    colour comes first), by how sure and how large it is and, with a `plane`, by whether it has its size.
     """
     blobs = Blobs.empty()
     for k, image in enumerate(_arriving(cell, eye, name, arrival or ARRIVALS.get(tracker.name, Arrival()))):
         blobs = tracker.step(image, k / world.frame_rate)
-    if not len(blobs):
-        raise NothingSeen(tracker.name, name)
-    best = int(np.argmax(blobs.score * np.sqrt(blobs.area_px)))
-    return Seen(blobs.centroid_px[best], float(blobs.yaw_rad[best]), float(blobs.axes_px[best, 0]))
+    item = next(one for one in world.design.items if one.name == name)
+    return recognised(blobs, tracker.name, item, plane)
+
+
+def recognised(blobs: Blobs, tracker: str, item: Item, plane: WorkPlane | None) -> Survey:
+    """Which of the blobs is the item, and what else was seen. Raises NothingSeen."""
+    mine = np.flatnonzero(blobs.kind == 0)
+    if not len(mine):
+        raise NothingSeen(tracker, item.name)
+    hull = shape_named(item.shape, item.size_m, item.colour).hull
+    worth = blobs.score * np.sqrt(blobs.area_px)
+    if plane is not None and len(mine) > 1:
+        worth = blobs.score * np.array([_alike(blobs, k, hull, plane) for k in range(len(blobs))])
+    best = int(mine[np.argmax(worth[mine])])
+    seen = [
+        Seen(
+            blobs.centroid_px[k],
+            float(blobs.yaw_rad[k]),
+            float(blobs.axes_px[k, 0]),
+            float(blobs.axes_px[k, 1]),
+        )
+        for k in range(len(blobs))
+    ]
+    others = tuple(one for k, one in enumerate(seen) if k != best)
+    return Survey(replace(seen[best], hull=hull), others)
+
+
+def _alike(blobs: Blobs, index: int, hull: Float[Array, "n 3"], plane: WorkPlane) -> float:
+    """From 0 to 1: how well a blob's axes are those of the body lying there."""
+    yaw = blobs.yaw_rad[index] if np.isfinite(blobs.yaw_rad[index]) else 0.0
+    seen = Seen(blobs.centroid_px[index], float(yaw), float(blobs.axes_px[index, 0]), hull=hull)
+    try:
+        expected = expected_axes_px(plane, seen, float(-hull[:, 2].min()))
+    except VisionRobotError:
+        return 0.0
+    return float(np.exp(-np.abs(np.log(np.maximum(blobs.axes_px[index], 0.1) / expected)).sum()))
 
 
 def _arriving(cell: Cell, eye: Eye, name: str, arrival: Arrival) -> Iterator[Image]:
-    there = cell.station_from(name)
-    along = there.rotation[:, 1] * arrival.distance_m
-    cell.place(name, AWAY @ there)
-    for _ in range(arrival.empty):
-        yield eye.picture()
+    free = [item.name for item in cell.design.items if item.path is None and not item.fixed]
+    there = {one: cell.station_from(one) for one in free}
+    along = there[name].rotation[:, 1] * arrival.distance_m
+    if arrival.empty:
+        for one in free:
+            cell.place(one, AWAY @ there[one])
+        for _ in range(arrival.empty):
+            yield eye.picture()
     for k in range(arrival.sliding):
         share = 1 - (k + 1) / arrival.sliding
-        cell.place(name, SE3(there.rotation, there.translation + share * along))
+        for one in free:  # all together, as on a tray that is pushed in
+            pose = there[one]
+            cell.place(one, SE3(pose.rotation, pose.translation + share * along))
         yield eye.picture()
-    cell.place(name, there)
+    if arrival.empty or arrival.sliding:
+        for one in free:
+            cell.place(one, there[one])
     for _ in range(arrival.still):
         yield eye.picture()

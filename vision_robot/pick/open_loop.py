@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vision_robot.errors import BadPath, NothingSeen, Unreachable
+from vision_robot.errors import BadPath, LostSight, NothingSeen, ServoAstray, Unreachable
 from vision_robot.geometry import SE3
 from vision_robot.pick.episode import Episode, axis_angle, miss_of
 from vision_robot.pick.goal import joints_for, station_from_grasp
@@ -33,6 +33,7 @@ Approach = Callable[[Player, Sighting, Float[Array, "n"]], tuple[Sighting, int]]
 
 def straight(player: Player, first: Sighting, above: Float[Array, "n"]) -> tuple[Sighting, int]:
     """Open loop: go where it was seen."""
+    player.phase = "above"
     player.move_to(above)
     return first, 1
 
@@ -56,7 +57,7 @@ def pick_and_place(
         episode = _pick(cell, player, knowledge, name, seen, episode, tolerances, approach)
         if episode.lifted:
             episode = _place(cell, player, knowledge, name, episode, tolerances)
-    except (Unreachable, BadPath, NothingSeen) as error:
+    except (Unreachable, BadPath, NothingSeen, LostSight, ServoAstray) as error:
         episode = replace(episode, failure=str(error))
     return replace(episode, seconds=cell.time_s - begun)
 
@@ -71,16 +72,21 @@ def _pick(
     tolerances: Tolerances,
     approach: Approach,
 ) -> Episode:
+    player.phase = "open"
     player.grip(OPENING_M, seconds=0.2)
     above = _joints(player, knowledge, seen, APPROACH_M)
     seen, looks = approach(player, seen, above)
     high, low = (_pose(player, knowledge, seen, h) for h in (APPROACH_M, 0.0))
+    player.phase = "above"
     player.move_to(_joints(player, knowledge, seen, APPROACH_M))
+    player.phase = "down"
     player.move_along(high, low)
     tool = cell.station_from_tool
     closing = miss_of(cell.station_from(name), tool.translation, axis_angle(tool.rotation, 1))
+    player.phase = "close"
     player.grip(cell.opening_limits_m[0])
     gripped = held_by(cell, name) >= BOTH
+    player.phase = "lift"
     player.move_along(low, high)
     lifted = False
     if gripped:
@@ -107,9 +113,12 @@ def _place(
     yaw = axis_angle(goal.rotation, 0)
     where = Sighting(goal.translation[:2], np.zeros((2, 2)), yaw, float(goal.translation[2]))
     high, low = (_pose(player, knowledge, where, h) for h in (APPROACH_M, 0.0))
+    player.phase = "carry"
     player.move_to(_joints(player, knowledge, where, APPROACH_M))
+    player.phase = "put down"
     player.move_along(high, low)
     player.grip(OPENING_M)
+    player.phase = "back"
     player.move_along(low, high)
     player.hold(0.5)
     thing = cell.station_from(name)

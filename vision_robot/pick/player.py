@@ -4,6 +4,7 @@ import numpy as np
 
 from vision_robot.arm.ik import InverseKinematics
 from vision_robot.arm.paths import follow, line
+from vision_robot.arm.ramp import ramp
 from vision_robot.arm.timing import Trajectory, timed
 from vision_robot.geometry import SE3
 from vision_robot.pick.world import World
@@ -29,6 +30,10 @@ class Player:
 
     def __init__(self, cell: Cell, world: World, solver: InverseKinematics):
         self.cell, self.world, self.solver = cell, world, solver
+        self.phase = ""
+        """What the arm is doing, in a word or two: for who watches."""
+        self.remark = ""
+        """What was found on the way, for who watches."""
         self._told = world.told_joints(cell.joints)
         self._side = np.zeros(len(self._told))
         slides = world.arm.chain.slides
@@ -65,9 +70,10 @@ class Player:
         self.cell.advance(seconds)
 
     def _timed(self, q: Float[Array, "points n"], share: float) -> Trajectory:
-        return timed(
-            self.world.arm.chain.joint_names, q, velocity=share * self._speed, acceleration=share * self._push
-        )
+        names, speed, push = self.world.arm.chain.joint_names, share * self._speed, share * self._push
+        if len(q) == 2:
+            return ramp(names, q[0], q[1], velocity=speed, acceleration=push)
+        return timed(names, q, velocity=speed, acceleration=push)
 
     def _play(self, motion: Trajectory) -> None:
         count = max(2, int(np.ceil(motion.seconds / PERIOD_S)) + 1)

@@ -50,6 +50,8 @@ class World:
     frame_rate: float = 30.0
     latency_s: float = 0.0
     """From a picture's moment to its blobs, for closed loops."""
+    lost_sight: float = 0.0
+    """Share of pictures in which the hand's label is not seen, for closed loops."""
 
     @property
     def view_now(self) -> StationCamera:

@@ -13,7 +13,7 @@ from vision_robot.report.page import Facts, Figures, Footer, Page, Paragraph, Pa
 from vision_robot.report.versions import versions
 from vision_robot.report.workspace_figures import workspace_figures
 
-__all__ = ["arm_page"]
+__all__ = ["arm_page", "arm_piece"]
 
 
 def arm_page(
@@ -35,6 +35,11 @@ def arm_page(
         ),
         footer=Footer(versions(), seed, command),
     )
+
+
+def arm_piece(arm: Arm, checks: Sequence[Consistency], found: Workspace) -> tuple[Part, ...]:
+    """What a longer story tells of an arm: whether it gets where it is asked, and where that is."""
+    return (Paragraph(summary(arm, checks)), _facts(checks), Figures(workspace_figures(found)))
 
 
 def summary(arm: Arm, checks: Sequence[Consistency]) -> str:

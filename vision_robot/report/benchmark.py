@@ -1,28 +1,34 @@
 """The page of a benchmark."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from vision_robot.evaluate.conclusion import compare_methods, sentence
+from vision_robot.evaluate.answer import answer
 from vision_robot.evaluate.dial import dials_of, measured
 from vision_robot.evaluate.metrics import metric_named
-from vision_robot.evaluate.score import Score, failures, scores
-from vision_robot.evaluate.statistics import Ranking, rank_methods
+from vision_robot.evaluate.score import Score, scores
+from vision_robot.evaluate.sensitivity import Sensitivity, sensitivities, without_variants
 from vision_robot.evaluate.sweep import Outcome
-from vision_robot.report.benchmark_figures import interval_chart, rank_diagram, severity_chart
-from vision_robot.report.page import Facts, Figures, Footer, Page, Paragraph, Remarks, Section, Table
-from vision_robot.report.quantity import compact, listed
+from vision_robot.report.benchmark_answer import answer_section, scene_section
+from vision_robot.report.benchmark_curves import sensitivity_chart, severity_chart
+from vision_robot.report.benchmark_figures import interval_chart, rank_diagram
+from vision_robot.report.benchmark_tables import (
+    breakdown_table,
+    failure_section,
+    figure_table,
+    made_section,
+    power_section,
+)
+from vision_robot.report.film_strip import LEGEND
+from vision_robot.report.page import Figures, Footer, Page, Paragraph, Picture, Section, Strips
+from vision_robot.report.quantity import compact
 from vision_robot.report.versions import versions
 
-__all__ = ["ranking_of", "benchmark_page"]
+__all__ = ["benchmark_page"]
 
-ABOUT_TIMING = (
-    "Times are of cells that ran alone: one process, frames decoded into memory beforehand, nothing else of "
-    "the benchmark computing. They depend on the machine; ratios between methods of one run carry further."
-)
-
-MOST_SENTENCES = 12
+MOST_STRIP_BYTES = 6_000_000
+"""Of all strips together, so that a page can be sent by mail."""
 
 
 def benchmark_page(
@@ -33,96 +39,69 @@ def benchmark_page(
     threshold: float = 0.5,
     command: str = "",
     seed: int | None = None,
+    timing: str = "",
+    axes: Mapping[str, str] | None = None,
 ) -> Page:
-    """Everything a suite found: who is ahead and how surely, where each method breaks, what failed.
+    """Everything a suite found: who is ahead and how surely, what failed, where each method breaks.
 
-    `metric` is the one that ranks; all others stand in the tables.
+    `metric` is the one that ranks; all others stand in the tables. `timing` says how times were measured
+    where it was not in the usual way, `axes` what the severities of a difficulty are.
     """
-    found = scores(outcomes)
-    methods = list(dict.fromkeys(score.method for score in found))
-    scenes = list(dict.fromkeys(score.scene for score in found))
-    ranking = ranking_of(outcomes, metric, methods)
+    usual = without_variants(outcomes)
+    found = scores(usual)
+    methods = list(dict.fromkeys(outcome.cell.method for outcome in usual))
+    scenes = list(dict.fromkeys(outcome.cell.scene for outcome in usual))
+    overall = answer(usual, metric)
     sections = [
-        Section("Result", (_facts(outcomes, ranking, metric), Remarks(_remarks(outcomes, scenes, metric)))),
-        *_ranks(ranking, metric),
-        Section("Scenes", (Figures(tuple(_charts(found, scenes, methods, metric))),)),
-        *_breakdowns(outcomes, scenes, methods, metric, threshold),
-        *(_table(found, name) for name in dict.fromkeys(score.metric for score in found)),
-        *_failed(outcomes),
+        answer_section(usual, overall),
+        failure_section(outcomes),
+        scene_section(usual, scenes, metric) if len(scenes) > 1 else None,
+        _breakdowns(usual, scenes, methods, metric, threshold, axes or {}),
+        _ranks(usual, metric),
+        _strips(outcomes, metric),
+        _charts(found, scenes, methods, metric),
+        _sensitivity(sensitivities(outcomes, metric), metric),
+        power_section(overall),
+        *(figure_table(found, name) for name in dict.fromkeys(score.metric for score in found)),
+        made_section(outcomes, timing),
     ]
-    summary = f"{len(methods)} methods on {len(scenes)} scenes, {_seeds(outcomes)} seed(s) each at most."
-    return Page(f"Benchmark: {suite}", summary, tuple(sections), Footer(versions(), seed, command))
-
-
-def ranking_of(outcomes: Sequence[Outcome], metric_name: str, methods: Sequence[str]) -> Ranking:
-    """All methods over all scenes and seeds; a failure ranks last there, and is not left out."""
-    metric = metric_named(metric_name)
-    worst = -np.inf if metric.better == "higher" else np.inf
-    table: dict[tuple[str, int], dict[str, float]] = {}
-    for outcome in outcomes:
-        value = outcome.figures.get(metric_name, np.nan)
-        if np.isfinite(value) or outcome.failure is not None:
-            block = table.setdefault((outcome.cell.scene, outcome.cell.seed), {})
-            block[outcome.cell.method] = value if np.isfinite(value) else worst
-    blocks = [key for key, row in table.items() if len(row) == len(methods)]
-    values = np.array([[table[key][name] for name in methods] for key in blocks]).reshape(-1, len(methods))
-    finite = values[np.isfinite(values)]
-    # Beyond all others, and finite, so that differences can be taken.
-    far = finite.min(initial=0) - 1 if metric.better == "higher" else finite.max(initial=0) + 1
-    values = np.where(np.isfinite(values), values, far)
-    clusters = np.array([seed for _, seed in blocks])
-    return rank_methods(methods, values, clusters, higher_is_better=metric.better == "higher")
-
-
-def _facts(outcomes: Sequence[Outcome], ranking: Ranking, metric: str) -> Facts:
-    ahead = ranking.winner or listed([ranking.methods[i] for i in range(ranking.groups[0][1] + 1)])
-    about = "differs from every other method" if ranking.winner else "cannot be told apart with these seeds"
-    failed = sum(outcome.failure is not None for outcome in outcomes)
-    return Facts(
-        (
-            (f"ahead by {metric}", ahead, about),
-            ("scenes and seeds", str(ranking.blocks), "on which every method has a figure"),
-            ("cells", str(len(outcomes)), f"{failed} failed" if failed else "none failed"),
-            ("computing", f"{sum(outcome.seconds for outcome in outcomes):.0f} s", "all cells together"),
-        )
+    seeds = len({outcome.cell.seed for outcome in outcomes})
+    summary = (
+        f"{len(methods)} methods on {len(scenes)} scene{'s' if len(scenes) > 1 else ''}, {seeds} "
+        f"seed{'s' if seeds > 1 else ''}. {metric}: {metric_named(metric).meaning}, "
+        f"{metric_named(metric).better} is better."
     )
+    shown = tuple(section for section in sections if section is not None)
+    return Page(f"Benchmark: {suite}", summary, shown, Footer(versions(), seed, command))
 
 
-def _remarks(outcomes: Sequence[Outcome], scenes: Sequence[str], metric: str) -> tuple[tuple[str, str], ...]:
-    """The comparisons of the first method of each scene with the second: what a reader asks first."""
-    remarks = []
-    for scene in scenes:
-        pairs = compare_methods(outcomes, metric, scene)
-        if not pairs:
-            continue
-        wins: dict[str, int] = {}
-        for pair in pairs:
-            wins[pair.better] = wins.get(pair.better, 0) + 1
-        first = max(wins, key=lambda name: wins[name])
-        rivals = [pair for pair in pairs if pair.better == first]
-        closest = min(rivals, key=lambda pair: pair.difference.value)
-        tone = {"better": "good", "equivalent": "note", "open": "caution"}[closest.verdict]
-        remarks.append((tone, f"{sentence(closest)}."))
-    return tuple(remarks[:MOST_SENTENCES])
+def _ranks(outcomes: Sequence[Outcome], metric: str) -> Section | None:
+    found = answer(outcomes, metric)
+    if found is None or len(found.standings) < 2 or not found.ranking.blocks:
+        return None
+    return Section("Ranks", (Figures((rank_diagram(found.ranking, metric),)),))
 
 
-def _ranks(ranking: Ranking, metric: str) -> list[Section]:
-    if len(ranking.methods) < 2 or not ranking.blocks:
-        return []
-    return [Section("Ranks", (Figures((rank_diagram(ranking, metric),)),))]
-
-
-def _charts(found: Sequence[Score], scenes: Sequence[str], methods: Sequence[str], metric: str):
+def _charts(
+    found: Sequence[Score], scenes: Sequence[str], methods: Sequence[str], metric: str
+) -> Section | None:
+    charts = []
     for scene in scenes:
         here = [score for score in found if score.scene == scene and score.metric == metric]
         if here:
-            yield interval_chart(here, methods)
+            charts.append(interval_chart(here, methods))
+    return Section("Scenes", (Figures(tuple(charts)),)) if charts else None
 
 
 def _breakdowns(
-    outcomes: Sequence[Outcome], scenes: Sequence[str], methods: Sequence[str], metric: str, threshold: float
-) -> list[Section]:
-    charts = []
+    outcomes: Sequence[Outcome],
+    scenes: Sequence[str],
+    methods: Sequence[str],
+    metric: str,
+    threshold: float,
+    axes: Mapping[str, str],
+) -> Section | None:
+    charts, breaks = [], {}
     for dial in dials_of(scenes):
         curves = {
             name: curve
@@ -130,41 +109,45 @@ def _breakdowns(
             if (curve := measured(dial, outcomes, metric, name, threshold=threshold)) is not None
         }
         if curves:
-            charts.append(severity_chart(curves, metric, dial.name, threshold))
-    return [Section("Where methods break", (Figures(tuple(charts)),))] if charts else []
+            charts.append(severity_chart(curves, metric, dial.name, threshold, axes.get(dial.name, "")))
+            breaks[dial.name] = {name: curve[2] for name, curve in curves.items()}
+    if not charts:
+        return None
+    table = breakdown_table(breaks, methods, metric, threshold)
+    return Section("Where methods break", (Figures(tuple(charts)), table))
 
 
-def _table(found: Sequence[Score], name: str) -> Section:
-    """One metric: scenes down, methods across, each with its interval."""
-    metric = metric_named(name)
-    rows = [score for score in found if score.metric == name]
-    methods = list(dict.fromkeys(score.method for score in rows))
-    cells = {(score.scene, score.method): _cell(score) for score in rows}
-    table = Table(
-        ("scene", *methods),
-        tuple(
-            (scene, *(cells.get((scene, method), "–") for method in methods))
-            for scene in dict.fromkeys(score.scene for score in rows)
-        ),
-        caption=f"{metric.meaning}{f' [{metric.unit}]' if metric.unit else ''}; {metric.better} is better; "
-        "mean and 95 % interval over seeds.",
-    )
-    return Section(name, (Paragraph(ABOUT_TIMING), table) if metric.timing else (table,))
+def _strips(outcomes: Sequence[Outcome], metric: str) -> Section | None:
+    """What the figures look like, the worst of each scene first."""
+    with_strip = [outcome for outcome in outcomes if outcome.strip]
+    if not with_strip:
+        return None
+    sign = -1 if metric_named(metric).better == "lower" else 1
+    scenes = list(dict.fromkeys(outcome.cell.scene for outcome in with_strip))
+    with_strip.sort(key=lambda o: (scenes.index(o.cell.scene), sign * o.figures.get(metric, -sign * np.inf)))
+    pictures, size = [], 0
+    for outcome in with_strip:
+        assert outcome.strip is not None, "chosen for it"
+        size += len(outcome.strip)
+        if size > MOST_STRIP_BYTES:
+            break
+        cell = outcome.cell
+        value = f"{metric} {compact(outcome.figures.get(metric, np.nan))}"
+        about = f"{cell.scene}, {cell.method}, seed {cell.seed}: {value}"
+        pictures.append(Picture(outcome.strip, f"Frames of {about}", about))
+    left = len(with_strip) - len(pictures)
+    told = f" {left} more are in the results and not here, to keep the page small." if left else ""
+    about = f"The worst of each scene first. {LEGEND}{told}"
+    return Section("Film strips", (Paragraph(about), Strips(tuple(pictures))))
 
 
-def _cell(score: Score) -> str:
-    if not np.isfinite(score.low):
-        return compact(score.value)
-    return f"{compact(score.value)} ({compact(score.low)} to {compact(score.high)})"
-
-
-def _failed(outcomes: Sequence[Outcome]) -> list[Section]:
-    failed = failures(outcomes)
-    if not failed:
-        return []
-    rows = tuple((one.scene, one.method, str(one.seed), one.reason) for one in failed)
-    return [Section("Failures", (Table(("scene", "method", "seed", "reason"), rows, "Nothing is hidden."),))]
-
-
-def _seeds(outcomes: Sequence[Outcome]) -> int:
-    return len({outcome.cell.seed for outcome in outcomes})
+def _sensitivity(found: Sequence[Sensitivity], metric: str) -> Section | None:
+    if not found:
+        return None
+    parameters = dict.fromkeys(one.parameter for one in found)
+    charts = [
+        sensitivity_chart([one for one in found if one.parameter == parameter], metric, parameter)
+        for parameter in parameters
+    ]
+    about = "How much the scores hang on the methods' own parameters, the most sensitive first."
+    return Section("Sensitivity", (Paragraph(about), Figures(tuple(charts))))

@@ -27,7 +27,7 @@ from vision_robot.report.versions import versions
 from vision_robot.report.view_figures import board_poses, coverage
 from vision_robot.types import Array, Float, Image
 
-__all__ = ["calibration_page"]
+__all__ = ["calibration_page", "calibration_piece"]
 
 
 def calibration_page(
@@ -94,6 +94,24 @@ def calibration_page(
         summary=_summary(findings, board),
         sections=tuple(sections),
         footer=Footer(versions=versions(), seed=seed, command=command),
+    )
+
+
+MOST_IN_A_PIECE = 8
+"""Pictures shown where the calibration is a part of a longer story."""
+
+
+def calibration_piece(
+    result: CalibrationResult, truth: Camera, images: Mapping[str, Image]
+) -> tuple[Part, ...]:
+    """What a longer story tells of a calibration: pictures, headline figures, and the error to the truth."""
+    findings = find(result, truth)
+    assert findings.truth is not None, "the truth was given"
+    shown = dict(list(images.items())[:MOST_IN_A_PIECE])
+    return (
+        Gallery(thumbnails(findings, shown)),
+        _facts(findings),
+        *_against(findings, findings.truth),
     )
 
 

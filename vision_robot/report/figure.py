@@ -49,10 +49,11 @@ _STYLE = {
 }
 
 
-def draw(paint: Callable[["Figure"], None], *, height_in: float) -> str:
+def draw(paint: Callable[["Figure"], None], *, height_in: float, text_pt: float = 8.0) -> str:
     """SVG text of a drawing that `paint` puts on an empty figure of width `WIDTH_IN`.
 
-    No pyplot, no window, no date: the bytes follow from the data alone.
+    Titles and ticks follow `text_pt`, the size of ordinary text. No pyplot, no window, no date:
+    the bytes follow from the data alone.
     """
     import io
 
@@ -60,7 +61,8 @@ def draw(paint: Callable[["Figure"], None], *, height_in: float) -> str:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
 
-    with matplotlib.rc_context(_STYLE):  # pyright: ignore[reportArgumentType]
+    sizes = {key: value * text_pt / 8 for key, value in _STYLE.items() if key.endswith("size")}
+    with matplotlib.rc_context({**_STYLE, **sizes}):  # pyright: ignore[reportArgumentType]
         figure = Figure(figsize=(WIDTH_IN, height_in))
         # Fixed margins: drawings side by side then line up, and no layout is solved for.
         figure.subplots_adjust(

@@ -24,6 +24,7 @@ __all__ = [
     "Picture",
     "Remarks",
     "Section",
+    "Strips",
     "Table",
     "render_page",
     "write_page",
@@ -69,6 +70,8 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
     caption: str
     numeric: frozenset[int] = frozenset()
+    pinned: bool = False
+    """Whether the first column stays in sight where the table is wider than the page."""
 
     def __post_init__(self) -> None:
         for row in self.rows:
@@ -114,12 +117,20 @@ class Picture:
 
 @dataclass(frozen=True)
 class Gallery:
-    """Small pictures in rows."""
+    """Small pictures in rows; `wide` ones are twice as large, so that words in them can be read."""
+
+    items: tuple[Picture, ...]
+    wide: bool = False
+
+
+@dataclass(frozen=True)
+class Strips:
+    """Wide pictures, each in a line of its own that can be moved sideways."""
 
     items: tuple[Picture, ...]
 
 
-Part = Paragraph | Remarks | Facts | Table | Figures | Gallery
+Part = Paragraph | Remarks | Facts | Table | Figures | Gallery | Strips
 
 
 @dataclass(frozen=True)

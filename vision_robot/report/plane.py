@@ -15,13 +15,16 @@ from vision_robot.report.page import (
     Figure,
     Figures,
     Footer,
+    Gallery,
     Page,
     Paragraph,
     Part,
+    Picture,
     Remarks,
     Section,
     Table,
 )
+from vision_robot.report.photograph import photograph
 from vision_robot.report.picture_axes import contour_map, picture_height_in
 from vision_robot.report.pixel_figures import residual_arrows, scatter_rings
 from vision_robot.report.quantity import compact, with_sigma
@@ -29,7 +32,7 @@ from vision_robot.report.space_figure import InSpace, space_figure
 from vision_robot.report.versions import versions
 from vision_robot.types import Array, Float, Image
 
-__all__ = ["plane_page"]
+__all__ = ["plane_page", "plane_piece"]
 
 GRID = (7, 5)
 
@@ -71,6 +74,19 @@ def plane_page(
         f"view(s). The residuals are {compact(fit.rms_px)} px rms per point.",
         sections=tuple(sections),
         footer=Footer(versions=versions(), seed=seed, command=command),
+    )
+
+
+def plane_piece(fit: PlaneFit, truth: WorkPlane, image: Image) -> tuple[Part, ...]:
+    """What a longer story tells of a work plane: the board on the table, headline figures, errors."""
+    picture = Picture(
+        photograph(image), "A board lying on the table", "The board that tells where the table is."
+    )
+    return (
+        Remarks(tuple(_remarks(fit, None, truth))),
+        _facts(fit, None),
+        Gallery((picture,), wide=True),
+        Figures((_sigma_map(fit), _ellipses(fit, truth))),
     )
 
 

@@ -1,5 +1,6 @@
 """A robot cell that runs: table, items, belt and arm in MuJoCo, with their true poses in {S}."""
 
+from collections.abc import Callable
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -48,6 +49,8 @@ class Cell:
             if item.path is not None
         ]
         self._lights = self._lights_now()
+        self._watch: tuple[float, Callable[[], None]] | None = None
+        self._next_watch_s = 0.0
         self._drive = Drive.of(mj, self.model, ARM)
         labelled = design.arm is not None and design.arm.label is not None
         names = [item.name for item in design.items if item.tracked]
@@ -127,6 +130,16 @@ class Cell:
         self.data.time = time_s
         self._settle_kinematics()
 
+    def watch(self, period_s: float, look: Callable[[], None] | None) -> None:
+        """Have `look` called after each `period_s` of physics from now on, None ends it: what films the cell.
+
+        It may read everything and must move nothing.
+        """
+        if not period_s > 0:
+            raise BadParameter("period of a watch", period_s, "positive")
+        self._watch = None if look is None else (period_s, look)
+        self._next_watch_s = self.time_s + period_s
+
     def _steps(self, seconds: float) -> int:
         if not (np.isfinite(seconds) and seconds >= 0):
             raise BadParameter("seconds", seconds, "zero or more")
@@ -143,6 +156,9 @@ class Cell:
         self.model.opt.timestep = seconds
         self._move_paths()
         self._mujoco.mj_step(self.model, self.data)
+        if self._watch is not None and self.time_s >= self._next_watch_s - 1e-9:
+            self._next_watch_s += self._watch[0]
+            self._watch[1]()
 
     def _move_paths(self) -> None:
         for item, mocap, path in self._paths:

@@ -1,5 +1,6 @@
 """MuJoCo pictures, depth and object ids through any camera of this library."""
 
+from functools import lru_cache
 from typing import Any, Self, TypeAlias
 
 import cv2
@@ -121,7 +122,7 @@ class Renderer:
 
     def _cover(self, camera: Camera) -> PinholeCover:
         if camera not in self._covers:
-            self._covers = {camera: PinholeCover.of(camera)}  # maps are large: keep the last one only
+            self._covers = {camera: _cover_of(camera)}
         return self._covers[camera]
 
     def _coded(
@@ -152,6 +153,11 @@ class Renderer:
         if depth:
             metres = cover.assemble_depth([m for _, m in drawn if m is not None], [n for n, _ in drawn])
         return number, canvas.objects(hidden_groups), metres
+
+
+@lru_cache(maxsize=1)  # maps are large: only the last camera's are kept
+def _cover_of(camera: Camera) -> PinholeCover:
+    return PinholeCover.of(camera)
 
 
 def _upright(rgb: UInt8[Array, "height width 3"], *, grey: bool) -> Image:

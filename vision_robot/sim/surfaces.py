@@ -1,5 +1,7 @@
 """Pictures of table tops: drawn from a seed, so that they need no file."""
 
+from functools import lru_cache
+
 import cv2
 import numpy as np
 
@@ -14,6 +16,7 @@ BELT_PITCH_M = 0.1
 """Length after which the belt's picture repeats."""
 
 
+@lru_cache(maxsize=8)
 def table_picture(surface: str, colour: Colour, seed: int) -> UInt8[Array, "rows columns 3"]:
     """Red-green-blue picture of a table top; its rows run along the grain."""
     rng = np.random.default_rng(seed)
@@ -26,7 +29,9 @@ def table_picture(surface: str, colour: Colour, seed: int) -> UInt8[Array, "rows
         shade = np.kron(squares - 0.5, np.ones((SIDE // 16, SIDE // 16))) * 0.35
     else:
         shade = np.zeros((8, 8))
-    return _tinted(shade, colour)
+    picture = _tinted(shade, colour)
+    picture.flags.writeable = False  # it is kept
+    return picture
 
 
 def belt_picture(colour: Colour) -> UInt8[Array, "rows columns 3"]:

@@ -83,6 +83,12 @@ class TruthRenderer:
                 return self._redrawn(base_from_cam, region)
         return self._renderer.render(camera, base_from_cam)
 
+    def through(self, view: StationCamera) -> Image:
+        """Colours only, through a camera that stands elsewhere."""
+        return self._renderer.render(
+            view.camera, self.cell.base_from_station @ view.cam_from_station.inverse()
+        )
+
     def _redrawn(self, base_from_cam: SE3, region: Region) -> Image:
         """The picture of all that stands, drawn once, with the region drawn anew.
 

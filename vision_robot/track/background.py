@@ -324,10 +324,11 @@ class Background(Tracker, LooksAhead):
         """Let the strips that are due take the frame, and what stood behind the objects in it."""
         self._frame += 1
         strips = self._ready.strips
-        self._learn_noise(even, strips[self._frame % len(strips)])
+        turn = strips[self._frame % len(strips)]
+        self._learn_noise(even, turn)
+        self._follow_spread(even[turn.rows], turn)
         for strip in self._ready.due(time_s):
             samples = even[strip.rows]
-            self._follow_spread(samples, strip)
             if self._ready.count > self.options.window // 4 and self.options.hold_s:
                 samples = self._held(samples, strip, time_s)
             self._ready.take(strip, samples, time_s)
@@ -335,15 +336,15 @@ class Background(Tracker, LooksAhead):
 
     def _held(self, samples: Image, strip: Strip, time_s: float) -> Image:
         """The samples with the background in place of objects that have not been there for too long."""
-        busy = cv2.dilate(self._busy[strip.rows], np.ones((5, 5), np.uint8)) > 0
+        busy = cv2.dilate(self._busy[strip.rows], np.ones((5, 5), np.uint8))
         since = self._since[strip.rows]
-        since[:] = np.where(busy, np.minimum(since, time_s), np.inf)
-        held = busy & (time_s - since < self.options.hold_s)
-        if not held.any():
+        if not busy.any():
+            since[:] = np.inf
             return samples
-        return np.where(
-            held if samples.ndim == 2 else held[..., None], self._ready.image[strip.rows], samples
-        )
+        np.minimum(since, time_s, out=since)
+        np.copyto(since, np.inf, where=busy == 0)
+        held = (busy > 0) & (since > time_s - self.options.hold_s)
+        return np.asarray(cv2.copyTo(self._ready.image[strip.rows], held.view(np.uint8), samples.copy()))
 
     def _refresh(self, strip: Strip) -> None:
         """Smoothed background and thresholds of a strip whose median has changed."""
@@ -357,14 +358,14 @@ class Background(Tracker, LooksAhead):
         self._thresholds[strip.rows] = cv2.max(thresholds, own)
 
     def _follow_spread(self, samples: Image, strip: Strip) -> None:
-        """Move each pixel's spread towards the quantile of what it differs by, a step a sample."""
+        """Move each pixel's spread towards the quantile of what it differs by, by one step."""
         apart = cv2.absdiff(cv2.blur(samples, (3, 3)), self._smooth[strip.rows])
         if apart.ndim == 3:
             apart = cv2.max(cv2.max(apart[..., 0], apart[..., 1]), apart[..., 2])
         spread = self._spread[strip.rows]
         step = np.where(apart > spread, np.float32(QUANTILE), np.float32(QUANTILE - 1))
-        still = self._busy[strip.rows] == 0
-        np.maximum(spread + step * still, 0, out=spread)
+        step[self._busy[strip.rows] > 0] = 0
+        np.maximum(spread + step, 0, out=spread)
 
     def _learn_noise(self, even: Image, strip: Strip) -> None:
         """From every fourth pixel of a strip, where nothing is."""

@@ -34,8 +34,6 @@ class BackgroundModel:
         self.image = np.zeros(shape, dtype=np.uint8)
         self._window, self._span_s = window, span_s
         edges = np.linspace(0, shape[0], min(STRIPS, shape[0]) + 1).astype(int)
-        if not span_s:
-            edges = edges[[0, -1]]
         self.strips = []
         for top, bottom in pairwise(edges.tolist()):
             out = self.image[top:bottom].reshape(-1)

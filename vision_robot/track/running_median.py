@@ -100,10 +100,12 @@ class RunningMedian:
             self._count_anew(block.start + outside)
 
     def _count_anew(self, where: Int[Array, "k"]) -> None:
-        window = self._ring[: self._count][:, where]
+        window = np.take(self._ring[: self._count], where, axis=1)
         half = (self._count - 1) // 2
         median = np.partition(window, half, axis=0)[half]
         lowest = np.clip(median.astype(np.int16) - (BAND - 1) // 2, 0, HIGHEST).astype(np.uint8)
         self.median[where], self._lowest[where] = median, lowest
+        true = np.empty(window.shape, dtype=bool)
         for j in range(BAND):
-            self._below[j, where] = (window < lowest + np.uint8(j)).sum(axis=0, dtype=np.uint8)
+            np.less(window, lowest + np.uint8(j), out=true)
+            self._below[j, where] = np.add.reduce(true.view(np.uint8), axis=0, dtype=np.uint8)

@@ -1,7 +1,7 @@
 """A whole video through a tracker: frames in, rows of tracks out, one frame at a time."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sized
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,12 +13,12 @@ from vision_robot.track.admission import Admission
 from vision_robot.track.blobs import Blobs
 from vision_robot.track.follow import Follower, FollowOptions
 from vision_robot.track.on_plane import OnPlane
-from vision_robot.track.sources import Source, frames_of
+from vision_robot.track.sources import Recording, Source, frames_of, open_recording
 from vision_robot.track.still_camera import StillCamera
 from vision_robot.track.tracker import LooksAhead, Remark, Tracker
 from vision_robot.tracks import Tracks
-from vision_robot.types import Array, Float
-from vision_robot.video import Frame, Video
+from vision_robot.types import Array
+from vision_robot.video import Frame
 
 __all__ = ["Latency", "Session", "Step", "track"]
 
@@ -88,20 +88,22 @@ class Session:
     def run(self, source: Source) -> Iterator[Step]:
         """The steps of all frames. After the last one `rest` has the rows that still waited.
 
-        A recorded video is looked ahead in where the tracker can learn from that. Raises BadFrame and
+        What is recorded (a video, a dataset, whatever has a length) is looked ahead in where the tracker
+        can learn from that. Raises BadFrame and
         BadVideo for frames that cannot be used, after all steps before them.
         """
         if isinstance(source, str | Path):
-            source = Video(source)
-        if isinstance(source, Video) and isinstance(self.tracker, LooksAhead):
-            self.tracker.learn((frame.image, frame.time_s) for frame in source)
+            source = open_recording(source)
+        recorded = isinstance(source, Recording | Sized)
+        if recorded and isinstance(self.tracker, LooksAhead):
+            self.tracker.learn((frame.image, frame.time_s) for frame in frames_of(source))
         for frame in frames_of(source):
             yield self._step(frame)
 
     def rest(self) -> Tracks:
         """The rows that were waiting for their tracks to be confirmed; to be called once, at the end."""
         parts = self._follower.finish() if self._follower else []
-        return _stacked([self._measured(part) for part in parts])
+        return Tracks.joined([self._measured(part) for part in parts])
 
     def remarks(self) -> tuple[Remark, ...]:
         """What the tracker says of itself, and what was seen of camera and clock."""
@@ -158,19 +160,7 @@ def track(
     """All tracks of a video as one table: `vr track video` without its files."""
     session = Session(tracker, follow=follow, plane=plane, z_m=z_m)
     parts = [step.final for step in session.run(source)]
-    return _stacked([*parts, session.rest()])
-
-
-def _stacked(parts: list[Tracks]) -> Tracks:
-    parts = [part for part in parts if len(part)]
-    if not parts:
-        return Tracks.empty()
-    names = [name for name in Tracks.__dataclass_fields__ if name != "extra"]
-    columns: dict[str, Float[Array, ...]] = {
-        name: np.concatenate([getattr(part, name) for part in parts]) for name in names
-    }
-    extra = {name: np.concatenate([part.extra[name] for part in parts]) for name in parts[0].extra}
-    return Tracks(**columns, extra=extra)
+    return Tracks.joined([*parts, session.rest()])
 
 
 def _eight_bits(image: Array) -> Array:

@@ -7,11 +7,15 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from vision_robot.errors import BadFrame, BadVideo
+from vision_robot.bag import Bag, is_bag
+from vision_robot.errors import BadFrame, BadParameter, BadVideo
 from vision_robot.types import Array
 from vision_robot.video import Frame, Video
 
-__all__ = ["CameraStream", "Source", "frames_of"]
+__all__ = ["CameraStream", "Recording", "Source", "frames_of", "open_recording"]
+
+Recording = Video | Bag
+"""What can be looked through again from its start."""
 
 Source = Path | str | Array | Iterable[Frame] | Iterable[Array]
 
@@ -50,14 +54,23 @@ class CameraStream:
             self._capture.release()
 
 
+def open_recording(path: Path | str, topic: str | None = None) -> Recording:
+    """A video file, or the topic of a ROS bag. Raises BadVideo, BadBag, BadParameter, MissingPackage."""
+    if is_bag(path):
+        return Bag(path, topic)
+    if topic is not None:
+        raise BadParameter("topic", topic, f"left out: {path} is no ROS bag")
+    return Video(path)
+
+
 def frames_of(source: Source, *, fps: float = 25.0) -> Iterator[Frame]:
-    """Frames with times from anything: the path of a video, a (n, height, width, ...) array, an iterable.
+    """Frames with times from anything: path of a video or bag, a (n, height, width, ...) array, any iterable.
 
     Pictures without times get those of `fps`. Raises BadVideo for files that are none, BadFrame where there
     is no frame at all.
     """
     if isinstance(source, str | Path):
-        yield from Video(source)
+        yield from open_recording(source)
         return
     index = -1
     for index, item in enumerate(source):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from tests.evaluate.sweep.work import calls
-from vision_robot.errors import BadParameter, BadTable, NoScheduler
+from vision_robot.errors import BadParameter, BadTable, NoScheduler, UnwritableOutput
 from vision_robot.evaluate.sweep import Cell, Store, run_sweep
 
 ROOT = Path(__file__).parents[3]
@@ -55,6 +55,40 @@ def test_a_failure_is_a_result_with_its_reason(tmp_path, trace):
     assert store.find(found.cell) == found
     (missing,) = run_sweep([Cell("s", "s", "m", 0, "vision_robot.nowhere:f")], store)
     assert "ModuleNotFoundError" in str(missing.failure)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_what_crashes_or_hangs_is_lost_alone(tmp_path, trace, workers):
+    ends = [{"end": "killed"}, {}, {"end": "left"}, {}, {"sleep_s": 60.0}, {}]
+    wanted = [cells(trace, i + 1, **end)[i] for i, end in enumerate(ends)]
+    found = run_sweep(wanted, Store(tmp_path / "results"), workers=workers, patience_s=2.0)
+    assert [outcome.failure for outcome in found] == [
+        "Crash: its process ended with signal SIGKILL: 0 is talkative",
+        None,
+        "Crash: its process ended with exit code 7: the last word",
+        None,
+        "TimeLimit: it took longer than 2 s and was ended",
+        None,
+    ]
+    assert [outcome.figures["metric"] for outcome in found[1::2]] == [2, 6, 10]
+    assert found[4].seconds < 30
+    assert [calls(trace, i) for i in range(6)] == [1] * 6
+
+
+@pytest.mark.parametrize("patience_s", [None, 60.0])
+def test_a_full_disk_is_no_fault_of_the_method(tmp_path, trace, patience_s):
+    store = Store(tmp_path / "results")
+    with pytest.raises(UnwritableOutput, match="No space left"):
+        run_sweep(cells(trace, 1, end="full"), store, patience_s=patience_s)
+    assert list(store) == []
+
+
+def test_outcomes_are_handed_on_once_they_are_kept(tmp_path, trace):
+    store, seen = Store(tmp_path / "results"), []
+    run_sweep(cells(trace, 1), store)
+    run_sweep(cells(trace, 3), store, done=lambda one: seen.append((one.cell.seed, store.find(one.cell))))
+    assert [seed for seed, _ in seen] == [1, 2]
+    assert all(kept is not None for _, kept in seen)
 
 
 def test_every_parameter_is_in_the_key(trace):
@@ -103,6 +137,8 @@ def test_a_killed_sweep_goes_on_where_it_was(tmp_path, trace):
 def test_no_workers_and_no_scheduler_are_refused(tmp_path, trace):
     with pytest.raises(BadParameter, match="workers"):
         run_sweep([], Store(tmp_path), workers=0)
+    with pytest.raises(BadParameter, match="time limit"):
+        run_sweep([], Store(tmp_path), patience_s=0)
     pytest.importorskip("distributed")
     with pytest.raises(NoScheduler, match="127"):
         run_sweep(cells(trace, 1), Store(tmp_path), scheduler="tcp://127.0.0.1:9")

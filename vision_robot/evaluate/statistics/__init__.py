@@ -3,7 +3,7 @@
 from vision_robot.evaluate.statistics.breakdown import Breakdown, breakdown_point
 from vision_robot.evaluate.statistics.interval import Interval, clustered_interval, wilson_interval
 from vision_robot.evaluate.statistics.paired import PairedTest, compare_pairs, holm
-from vision_robot.evaluate.statistics.power import seeds_needed
+from vision_robot.evaluate.statistics.power import detectable, seeds_needed
 from vision_robot.evaluate.statistics.ranking import Ranking, rank_methods
 
 __all__ = [
@@ -14,6 +14,7 @@ __all__ = [
     "breakdown_point",
     "clustered_interval",
     "compare_pairs",
+    "detectable",
     "holm",
     "rank_methods",
     "seeds_needed",

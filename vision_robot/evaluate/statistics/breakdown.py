@@ -51,8 +51,8 @@ def _crossing(severities: Array, mean: Array, threshold: float) -> float:
     if not len(under):
         return np.inf
     i = int(under[0])
-    if i == 0:
-        return float(severities[0])
+    if i == 0 or not np.isfinite(falling[i]):
+        return float(severities[i])
     share = (falling[i - 1] - threshold) / (falling[i - 1] - falling[i])
     return float(severities[i - 1] + share * (severities[i] - severities[i - 1]))
 

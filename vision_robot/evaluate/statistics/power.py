@@ -1,4 +1,4 @@
-"""How many seeds would settle a comparison."""
+"""How many seeds would settle a comparison, and what those at hand could."""
 
 from statistics import NormalDist
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from vision_robot.types import Array, Float
 
-__all__ = ["seeds_needed"]
+__all__ = ["detectable", "seeds_needed"]
 
 
 def seeds_needed(
@@ -25,3 +25,17 @@ def seeds_needed(
     z_level, z_power = normal.inv_cdf(1 - level / 2), normal.inv_cdf(power)
     spread = float(known.std(ddof=1))
     return max(2, int(np.ceil(((z_level + z_power) * spread / smallest) ** 2 + z_level**2 / 2)))
+
+
+def detectable(differences: Float[Array, "k"], *, power: float = 0.8, level: float = 0.05) -> float | None:
+    """The smallest true difference that these seeds would find with probability `power`.
+
+    `seeds_needed` the other way round. None where they are too few for any.
+    """
+    known = differences[np.isfinite(differences)]
+    normal = NormalDist()
+    z_level, z_power = normal.inv_cdf(1 - level / 2), normal.inv_cdf(power)
+    left = len(known) - z_level**2 / 2
+    if len(known) < 2 or left <= 0:
+        return None
+    return float((z_level + z_power) * known.std(ddof=1) / np.sqrt(left))

@@ -1,7 +1,7 @@
 """Many small measurements, each made once: in parallel, on a cluster, killed and resumed."""
 
-from vision_robot.evaluate.sweep.cell import Cell, Outcome
+from vision_robot.evaluate.sweep.cell import Cell, Measured, Outcome
 from vision_robot.evaluate.sweep.run import run_sweep
 from vision_robot.evaluate.sweep.store import Store
 
-__all__ = ["Cell", "Outcome", "Store", "run_sweep"]
+__all__ = ["Cell", "Measured", "Outcome", "Store", "run_sweep"]

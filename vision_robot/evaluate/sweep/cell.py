@@ -1,5 +1,6 @@
 """One measurement of a sweep, and what came of it."""
 
+import errno
 import hashlib
 import importlib
 import json
@@ -8,13 +9,14 @@ import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Any
 
 import vision_robot
-from vision_robot.errors import BadParameter
+from vision_robot.errors import BadParameter, MissingOpenGL, UnwritableOutput
+from vision_robot.machine.hardware import this_machine
 
-__all__ = ["Cell", "Outcome", "measure"]
+__all__ = ["Cell", "Measured", "Outcome", "measure"]
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,8 @@ class Cell:
     """One method on one scene with one seed: a pure function of what stands here.
 
     `work` names it as "module:function"; it takes `parameters` (all that JSON can hold) by name, a folder
-    `workspace` where what several cells need may be kept, and returns figures by the names of metrics.
+    `workspace` where what several cells need may be kept, and returns figures by the names of metrics, or
+    `Measured` where there is something to see too.
     The key is a hash of all of it (but the folder) and the version, so that a result is found again by
     what it is a result of.
     """
@@ -53,6 +56,18 @@ class Cell:
 
 
 @dataclass(frozen=True)
+class Measured:
+    """Figures by metric, and what a person would look at: some frames side by side as a data URI."""
+
+    figures: Mapping[str, float]
+    strip: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.strip is not None and not self.strip.startswith("data:image/"):
+            raise BadParameter("strip", self.strip[:40], "a data:image/... URI")
+
+
+@dataclass(frozen=True)
 class Outcome:
     """What a cell gave: figures by metric, or why it failed."""
 
@@ -62,22 +77,36 @@ class Outcome:
     seconds: float
     peak_memory_bytes: int
     """Of the process so far, whatever it did before this cell."""
+    strip: str | None = None
+    """Some frames side by side, as a data URI."""
+    machine: str = ""
+    """Where it was measured."""
+    cpu_seconds: float | None = None
+    """Processor time of the process: less than `seconds` where it had to wait."""
 
 
 def measure(cell: Cell, workspace: Path) -> Outcome:
-    """Do the work; an error becomes an outcome with its reason, since a method that fails is a result too."""
-    start = perf_counter()
+    """Do the work; an error becomes an outcome with its reason, since a method that fails is a result too.
+
+    What is the machine's fault and not the method's is raised: UnwritableOutput (a full disk), MissingOpenGL.
+    """
+    start, cpu = perf_counter(), process_time()
     figures: Mapping[str, float] = {}
-    failure = None
+    failure, strip = None, None
     try:
         module, name = cell.work.split(":")
-        work = getattr(importlib.import_module(module), name)
-        figures = {
-            metric: float(value) for metric, value in work(workspace=workspace, **cell.parameters).items()
-        }
+        answer = getattr(importlib.import_module(module), name)(workspace=workspace, **cell.parameters)
+        found = answer if isinstance(answer, Measured) else Measured(answer)
+        figures = {metric: float(value) for metric, value in found.figures.items()}
+        strip = found.strip
+    except (UnwritableOutput, MissingOpenGL):
+        raise
     except Exception as error:
+        if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+            raise UnwritableOutput(workspace, error.strerror or str(error)) from error
         failure = f"{type(error).__name__}: {error}"
-    return Outcome(cell, figures, failure, perf_counter() - start, _peak_memory())
+    taken = perf_counter() - start
+    return Outcome(cell, figures, failure, taken, _peak_memory(), strip, this_machine(), process_time() - cpu)
 
 
 def _peak_memory() -> int:

@@ -69,4 +69,7 @@ def _outcome(content: dict[str, Any]) -> Outcome:
         failure=content["failure"],
         seconds=content["seconds"],
         peak_memory_bytes=content["peak_memory_bytes"],
+        strip=content.get("strip"),
+        machine=content.get("machine", ""),
+        cpu_seconds=content.get("cpu_seconds"),
     )

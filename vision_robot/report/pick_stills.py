@@ -1,0 +1,25 @@
+"""Stills of an episode as pictures of a page."""
+
+from collections.abc import Sequence
+
+from vision_robot.pick.film import Still
+from vision_robot.report.page import Gallery, Picture
+from vision_robot.report.photograph import photograph
+
+__all__ = ["film_strip"]
+
+
+def film_strip(stills: Sequence[Still], name: str) -> Gallery:
+    """One picture of each phase that has a name, in the order of time."""
+    return Gallery(
+        tuple(
+            Picture(
+                data_uri=photograph(still.image),
+                alt=f"{name}, {still.phase}",
+                caption=f"{name}: {still.phase}, {still.time_s:.1f} s",
+            )
+            for still in stills
+            if still.phase
+        ),
+        wide=True,
+    )
