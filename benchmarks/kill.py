@@ -15,6 +15,7 @@ import signal
 import sys
 import tempfile
 import time
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -153,7 +154,8 @@ def interrupted(command: LongCommand, place: Path, tally: Tally, rng: random.Ran
     begin = time.monotonic()
     if process.poll() is None:
         tally.interrupts += 1
-    os.killpg(process.pid, signal.SIGINT)
+    with suppress(ProcessLookupError):  # it may have ended by itself just now
+        os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate()
     took = time.monotonic() - begin
     tally.slowest_interrupt_s = max(tally.slowest_interrupt_s, took)
