@@ -18,6 +18,7 @@ QUICK = [
     "measure",
     "next_view",
     "refinement",
+    "servoing",
     "synth_speed",
     "triangulation",
     "truth_accuracy",
