@@ -50,7 +50,7 @@ def test_before_any_look_it_is_what_was_believed_before():
 
 def test_two_heights_tell_the_place_that_one_does_not():
     """From one height a turn and a shift look alike, and at another height they differ."""
-    knock = SE3.from_rotvec(np.radians([1.0, 0.5, 0.3]), np.array([0.004, -0.003, 0.002]))
+    knock = SE3.from_rotvec(np.radians([1.5, 1.0, 0.0]), np.zeros(3))
     pixel = VIEW.camera.project((knock @ VIEW.cam_from_station).apply(np.array([[0.02, 0.03, 0.005]])))
     seen = Sighting(THEN.measure(pixel, z_m=0.005)[0][0], np.zeros((2, 2)), 0.4, 0.005)
     one, sigma_one = camera_shift(THEN, glimpses(knock, OVER[1:]), *PRIOR).met_again(seen)
