@@ -21,6 +21,7 @@ QUICK = [
     "measure",
     "next_view",
     "refinement",
+    "servoing",
     "synth_speed",
     "trackers",
     "triangulation",
