@@ -246,7 +246,7 @@ for row in scores.values():
 # text says, while light and colours are kind; it is gone when the rod's colour nears the table's. Which
 # of them "is best" is a question about the video, not about the method. The odds that `rgb` learns and the
 # medians of `background` hold in all three. Drifting light breaks the one assumption of optical flow, that
-# brightness is kept: the plain form is lost there, the best one evens the light out before it asks for motion.
+# brightness is kept: the plain form is lost there, the best one evens the light out beforehand.
 
 # %%
 nearly, drifting = scores["rod nearly wood-coloured"], scores["light drifts"]

@@ -91,12 +91,13 @@ def claim_words(found: Sequence[Finding], claim: Claim) -> list[str]:
         "open": "over all scenes together that is not settled",
     }[whole.verdict(claim.method)]
     words = [f"{said}. In {metric.name}, {overall} ({seeds} seeds): {_pairs(whole)}."]
-    for verdict, text in (
-        ("holds", "It holds on {}"),
-        ("fails", "It does not hold on {}"),
-        ("equal", "No difference that matters on {}"),
-        ("open", "Not settled on {}"),
-    ):
+    openings: dict[Verdict, str] = {
+        "holds": "It holds on {}",
+        "fails": "It does not hold on {}",
+        "equal": "No difference that matters on {}",
+        "open": "Not settled on {}",
+    }
+    for verdict, text in openings.items():
         those = [one for one in axes if one.verdict(claim.method) == verdict]
         if those:
             words.append(text.format("; ".join(_axis_words(one, verdict, claim) for one in those)) + ".")

@@ -109,17 +109,14 @@ def test_sight_that_is_lost_when_enough_is_known_is_no_reason_to_stop():
 
 def test_latency_costs_stability_only_where_it_is_not_compensated():
     how = replace(HOW, gain_per_s=10.0)
-    slow = {"latency_s": 0.3, "noise_px": 0.02}
-    mended = LAWS["position"](
-        KinematicStage(BELIEVED, KNOCK, np.array(PLACE), **slow), sighted(KNOCK, PLACE), how
-    )
+
+    def slow() -> KinematicStage:
+        return KinematicStage(BELIEVED, KNOCK, np.array(PLACE), latency_s=0.3, noise_px=0.02)
+
+    mended = LAWS["position"](slow(), sighted(KNOCK, PLACE), how)
     assert off_m(mended, PLACE) < 5e-4
     with pytest.raises(ServoAstray, match="position loop did not settle in 6 s"):
-        LAWS["position"](
-            KinematicStage(BELIEVED, KNOCK, np.array(PLACE), **slow),
-            sighted(KNOCK, PLACE),
-            replace(how, compensate=False),
-        )
+        LAWS["position"](slow(), sighted(KNOCK, PLACE), replace(how, compensate=False))
 
 
 @pytest.mark.parametrize(
