@@ -75,8 +75,7 @@ def row(arm: Arm, goals: SE3, method: Method, *, compiled: bool, repeats: int) -
         solver = InverseKinematics(arm, method=method, compiled=compiled)
     except (UnknownStructure, BadParameter):
         return None
-    solver.solve(goals[:50])
-    seconds = []
+    found, seconds = solver.solve(goals[:50]), []
     for _ in range(repeats):
         start = process_time()
         found = solver.solve(goals)

@@ -8,6 +8,8 @@ know the joints' limits. Where a library has steps but no solver (Pinocchio, min
 examples is written around them.
 """
 
+# pyright: basic, reportMissingImports=false, reportAttributeAccessIssue=false, reportCallIssue=false
+
 import importlib.util
 import json
 import sys

@@ -15,8 +15,12 @@ import pytest
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
 SCRIPTS = sorted(FOLDER.glob("*.py"))
-SECONDS = 120
+SECONDS = 600
+"""For one cell on a machine that has other work; alone every notebook takes less than two minutes."""
+
 MOST_BYTES = 400_000
+PLOT_BYTES = 60_000
+PICTURES = {"image/png", "image/jpeg"}
 
 MACHINE_PATH = re.compile(
     r"(?<![\w.:/-])/(?:home|root|tmp|usr|work|var|opt|mnt|Users)/|[A-Z]:\\\\|site-packages"
@@ -68,7 +72,7 @@ def test_halves_are_in_step(script):
     code = [cell for cell in kept.cells if cell.cell_type == "code"]
     assert [cell.execution_count for cell in code] == list(range(1, len(code) + 1)), "not run in one go"
     outputs = [output for cell in code for output in cell.outputs]
-    assert any("image/png" in output.get("data", {}) for output in outputs), "no figure in it"
+    assert any(PICTURES & set(output.get("data", {})) for output in outputs), "no figure in it"
     assert not any(output.output_type == "error" or output.get("name") == "stderr" for output in outputs)
 
 
@@ -81,7 +85,8 @@ def test_is_fit_to_be_kept(script):
     for cell in notebook["cells"]:
         assert set(cell["metadata"]) <= {"lines_to_next_cell"}  # which the .py half needs
         for output in cell.get("outputs", []):
-            text = json.dumps({**output, "data": {**output.get("data", {}), "image/png": ""}})
+            told = {kind: data for kind, data in output.get("data", {}).items() if kind not in PICTURES}
+            text = json.dumps({**output, "data": told})
             assert not MACHINE_PATH.search(text), text
     assert any("assert " in "".join(cell["source"]) for cell in notebook["cells"]), "its prose is not checked"
 
@@ -92,15 +97,15 @@ def _below_the_header(text):
 
 
 def _make_pictures_small(notebook):
-    """Figures of at most 256 colours: a third of the size, and no eye sees it."""
+    """Photos as JPEG: a fifth of the size. Plots are small, and stay sharp, as they are."""
     from PIL import Image
 
     for cell in notebook.cells:
         for output in cell.get("outputs", []):
-            if "image/png" in output.get("data", {}):
-                picture = Image.open(io.BytesIO(base64.b64decode(output["data"]["image/png"])))
+            picture = base64.b64decode(output.get("data", {}).get("image/png", ""))
+            if len(picture) > PLOT_BYTES:
                 small = io.BytesIO()
-                picture.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(
-                    small, "png", optimize=True
-                )
-                output["data"]["image/png"] = base64.b64encode(small.getvalue()).decode() + "\n"
+                colours = Image.open(io.BytesIO(picture)).convert("RGB")
+                colours.save(small, "jpeg", quality=90, subsampling=0, optimize=True)
+                del output["data"]["image/png"]
+                output["data"]["image/jpeg"] = base64.b64encode(small.getvalue()).decode() + "\n"

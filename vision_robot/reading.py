@@ -35,7 +35,7 @@ __all__ = [
 ]
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
-_DOTTED = re.compile(r"""(?:[\w"'-]+[ \t]*\.[ \t]*){100}""")
+_DOTTED = re.compile(r"""(?<![\w"'-])(?:[\w"'-]+[ \t]*\.[ \t]*){100}""")
 
 Refusal = Callable[[object, str], BadInput]
 """The error to raise, of a path and a reason."""

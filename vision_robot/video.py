@@ -1,5 +1,7 @@
 """Videos, read and written one frame at a time."""
 
+import errno
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +11,7 @@ import cv2
 import numpy as np
 
 from vision_robot import MOST_PIXELS
-from vision_robot.errors import BadParameter, BadVideo
+from vision_robot.errors import BadParameter, BadVideo, UnwritableOutput
 from vision_robot.files import atomic_path
 from vision_robot.reading import Refusal
 from vision_robot.types import Image
@@ -18,6 +20,9 @@ __all__ = ["Frame", "Video", "VideoWriter", "open_video"]
 
 CODECS = {".avi": "MJPG", ".mkv": "FFV1", ".mp4": "mp4v", ".webm": "VP90"}
 """What each container is written with; FFV1 in .mkv is lossless."""
+
+PROBE_BYTES = 1 << 16
+"""More than encoders keep back before they write."""
 
 LIKELY_FPS = (1.0, 1000.0)
 
@@ -84,12 +89,23 @@ def open_video(path: Path, refuse: Refusal) -> cv2.VideoCapture:
     """OpenCV's reader of a plain file whose frames are not beyond all measure."""
     if not path.is_file():
         raise refuse(path, "it is not a plain file" if path.exists() else "there is no such file")
+    if not _is_text(path):
+        raise refuse(path, "its name is no text in UTF-8: rename it")
     capture = cv2.VideoCapture(str(path))
     width, height = (capture.get(side) for side in (cv2.CAP_PROP_FRAME_WIDTH, cv2.CAP_PROP_FRAME_HEIGHT))
     if width * height > MOST_PIXELS:
         capture.release()
         raise refuse(path, f"its frames are {width:.0f}x{height:.0f} px, more than {MOST_PIXELS} in all")
     return capture
+
+
+def _is_text(path: Path) -> bool:
+    """Whether OpenCV can be given the name; others crash it."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 class VideoWriter:
@@ -103,12 +119,14 @@ class VideoWriter:
         self.path, self.size, self.fps = Path(path), size, float(fps)
         if self.path.suffix.lower() not in CODECS:
             raise BadParameter("video file", str(path), f"named *{', *'.join(CODECS)}")
+        if not _is_text(self.path):
+            raise BadVideo(path, "its name is no text in UTF-8: choose another")
         if not (np.isfinite(self.fps) and self.fps > 0):
             raise BadParameter("fps", fps, "positive")
 
     def __enter__(self) -> Self:
         self._place = atomic_path(self.path)
-        temporary = self._place.__enter__()
+        self._temporary = temporary = self._place.__enter__()
         code = cv2.VideoWriter.fourcc(*CODECS[self.path.suffix.lower()])
         self._writer = cv2.VideoWriter(str(temporary), code, self.fps, self.size)
         if not self._writer.isOpened():
@@ -126,4 +144,23 @@ class VideoWriter:
 
     def __exit__(self, *exception: object) -> None:
         self._writer.release()
+        error = None if exception[0] else _no_room(self._temporary)
+        if error is not None:
+            refused = UnwritableOutput(self.path, error.strerror or str(error))
+            self._place.__exit__(type(refused), refused, None)
+            raise refused
         self._place.__exit__(*exception)  # type: ignore[arg-type]
+
+
+def _no_room(path: Path) -> OSError | None:
+    """Why the disk takes no more; OpenCV does not tell that its frames found no place."""
+    size = path.stat().st_size
+    try:
+        with path.open("r+b", buffering=0) as file:
+            file.seek(size)
+            written = file.write(bytes(PROBE_BYTES))
+            os.fsync(file.fileno())
+            file.truncate(size)
+        return None if written == PROBE_BYTES else OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    except OSError as error:
+        return error

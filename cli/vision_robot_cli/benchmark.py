@@ -13,7 +13,7 @@ SEEDS, QUICK_SEEDS = 12, 2
 
 
 def benchmark(
-    suite: Annotated[str, typer.Argument(help="calibration, flow, trackers, ik or all.")] = "all",
+    suite: Annotated[str, typer.Argument(help="calibration, trackers, flow, ik, grasp or all.")] = "all",
     scenes: Annotated[
         list[str] | None, typer.Option("--scene", help="Only this scene. May be repeated.")
     ] = None,

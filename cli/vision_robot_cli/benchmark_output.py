@@ -8,13 +8,22 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from vision_robot.evaluate.answer import answer, answer_words
 from vision_robot.evaluate.baseline import regressions
-from vision_robot.evaluate.conclusion import compare_methods, sentence
+from vision_robot.evaluate.claim import Claim, claim_words, findings
+from vision_robot.evaluate.conclusion import compare_methods
 from vision_robot.evaluate.score import Score, failures, scores
+from vision_robot.evaluate.sensitivity import without_variants
 from vision_robot_cli.benchmark_run import SuiteRun
 from vision_robot_cli.output import LimitMissed, note, plain
 
 __all__ = ["as_json", "as_text", "check_baseline", "write_reports", "write_tables"]
+
+MOST_LINES = 400
+"""Scores up to so many are printed in full."""
+
+CLAIM_METRICS = ("success_auc",)
+"""Claims are asked by these too: who follows well may not be who stays silent about the rest."""
 
 
 def as_json(runs: Sequence[SuiteRun]) -> dict[str, Any]:
@@ -23,16 +32,33 @@ def as_json(runs: Sequence[SuiteRun]) -> dict[str, Any]:
         "scores": [asdict(score) for score in _all_scores(runs)],
         "failures": [asdict(one) for run in runs for one in failures(run.outcomes)],
         "conclusions": [text for run in runs for text in _conclusions(run)],
+        "claims": [
+            {
+                "who": claim.who,
+                "method": claim.method,
+                "rivals": claim.rivals,
+                "metric": metric,
+                "words": words,
+            }
+            for run in runs
+            for claim, metric, words in _claims(run)
+        ],
+        "comparisons": [one for run in runs for one in _comparisons(run)],
     }
 
 
 def as_text(runs: Sequence[SuiteRun]) -> str:
-    """Scores by suite, scene and metric, then what may be concluded."""
+    """Scores by suite, scene and metric, then what may be concluded; of long runs the metric that ranks."""
     lines: list[str] = []
     for run in runs:
         lines.append(run.suite.name)
+        shown = sorted(scores(run.outcomes), key=lambda one: (one.scene, one.metric))
+        short = len(shown) > MOST_LINES
+        if short:
+            usual = without_variants(run.outcomes)
+            shown = [one for one in scores(usual) if one.metric == run.suite.metric]
         last = ("", "")
-        for score in sorted(scores(run.outcomes), key=lambda one: (one.scene, one.metric)):
+        for score in shown:
             if (score.scene, score.metric) != last:
                 unit = f" [{score.unit}]" if score.unit else ""
                 lines.append(f"  {score.scene}: {score.metric}{unit}, {score.better} is better")
@@ -40,7 +66,10 @@ def as_text(runs: Sequence[SuiteRun]) -> str:
             lines.append(f"    {score.method:<22} {_interval(score)}")
         lines += [f"  failed: {one.scene}, {one.method}, seed {one.seed}: {one.reason}"
                   for one in failures(run.outcomes)]  # fmt: skip
-        lines += [f"  {text}" for text in _conclusions(run)]
+        overall, *by_scene = _conclusions(run) or ["No method has a figure."]
+        lines += [f"  {text}" for text in (*by_scene, overall)]  # last what is read first
+        lines += [f"  {text}" for _, _, words in _claims(run) for text in words]
+        lines += ["  all metrics: --json, --tables DIR, --report FILE"] if short else []
     return "\n".join(lines)
 
 
@@ -67,8 +96,6 @@ def write_reports(runs: Sequence[SuiteRun], path: Path, seed: int) -> None:
 
 def write_tables(runs: Sequence[SuiteRun], folder: Path) -> None:
     """All scores, and each suite's summary, for a paper or another program."""
-    from vision_robot.evaluate.answer import answer
-    from vision_robot.evaluate.sensitivity import without_variants
     from vision_robot.files import write_text
     from vision_robot.report.benchmark_answer import summary_table
     from vision_robot.report.benchmark_files import scores_csv, table_csv, table_latex
@@ -106,11 +133,38 @@ def _all_scores(runs: Sequence[SuiteRun]) -> list[Score]:
 
 
 def _conclusions(run: SuiteRun) -> list[str]:
-    """All pairs of methods on every scene by the suite's metric."""
-    scenes = dict.fromkeys(outcome.cell.scene for outcome in run.outcomes)
+    """What may be said over all scenes, then scene by scene."""
+    usual, metric = without_variants(run.outcomes), run.suite.metric
+    scenes = list(dict.fromkeys(outcome.cell.scene for outcome in usual))
+    asked = [None, *(scenes if len(scenes) > 1 else ())]
+    found = [answer(usual, metric, scene) for scene in asked]
+    return [" ".join(text for _, text in answer_words(one)) for one in found if one is not None]
+
+
+def _comparisons(run: SuiteRun) -> list[dict[str, Any]]:
+    """All pairs over all scenes, in figures."""
+    pairs = compare_methods(without_variants(run.outcomes), run.suite.metric)
+    keys = ("scene", "better", "worse", "p", "verdict", "seeds_needed")
     return [
-        sentence(pair) for scene in scenes for pair in compare_methods(run.outcomes, run.suite.metric, scene)
+        {
+            "suite": run.suite.name,
+            "metric": run.suite.metric,
+            **{key: getattr(one, key) for key in keys},
+            "difference": one.difference.value,
+            "low": one.difference.low,
+            "high": one.difference.high,
+            "seeds": one.difference.n,
+        }
+        for one in pairs
     ]
+
+
+def _claims(run: SuiteRun) -> list[tuple[Claim, str, list[str]]]:
+    """Each claim, the metric it is asked by, and what the run says of it; by the metrics that are shares."""
+    usual = without_variants(run.outcomes)
+    asked = [(claim, metric) for claim in run.suite.claims for metric in (run.suite.metric, *CLAIM_METRICS)]
+    told = [(claim, metric, claim_words(findings(usual, metric, claim), claim)) for claim, metric in asked]
+    return [one for one in told if one[2]]
 
 
 def _interval(score: Score) -> str:

@@ -11,17 +11,23 @@ ROOT = Path(__file__).parents[2]
 
 
 QUICK = [
+    "adversity",
     "coverage",
+    "fuzz",
     "hand_eye",
     "ik",
     "ik_export",
+    "kill",
     "measure",
     "next_view",
     "refinement",
+    "servoing",
     "synth_speed",
+    "trackers",
     "triangulation",
     "truth_accuracy",
     "truth_speed",
+    "untilted",
 ]
 
 

@@ -52,10 +52,15 @@ def test_nobody_wins_without_significance_against_everybody(table):
 def test_equal_only_by_the_test_for_it_and_open_only_with_what_would_settle_it(table):
     for one in compare_methods(outcomes(table, METRIC), METRIC):
         text = sentence(one)
-        assert ("practically equal" in text) == one.equivalent
+        assert ("the same" in text) == (one.verdict == "same") == (table[one.better] == table[one.worse])
+        assert (
+            ("practically equal" in text)
+            == (one.verdict == "equivalent")
+            == (one.equivalent and not one.same)
+        )
         assert ("is better than" in text) == (one.p < LEVEL and not one.equivalent)
         assert ("not settled" in text) == (one.verdict == "open")
-        if one.equivalent:
+        if one.verdict == "equivalent":
             assert abs(one.difference.value) < one.zone
         if one.verdict == "open":
             seeds = int(re.findall(r"(\d+) seeds", needed_words(one))[0])
@@ -121,6 +126,16 @@ def with_failures(table: dict[str, list[float]], failed: dict[str, int]) -> list
         bad = cell.seed < failed.get(cell.method, 0)
         made.append(Outcome(cell, {}, "ValueError: no", 0.1, 1) if bad else outcome)
     return made
+
+
+def test_what_never_differed_is_said_so_and_not_called_equal():
+    """A thousand goals reached by both leave room for more than the zone: only what was seen is told."""
+    table = {"a": [1.0] * 12, "b": [1.0] * 12, "c": [1.0] * 11 + [0.99]}
+    found = answer(outcomes(table, "ik_success"), "ik_success")
+    assert found is not None
+    assert found.winner is None
+    assert "The same as a on every scene and seed: b." in text_of(found)
+    assert "Practically equal" not in text_of(found)
 
 
 def test_who_fails_oftener_than_another_wins_nothing():

@@ -16,14 +16,14 @@ from vision_robot.errors import VisionRobotError
 from vision_robot.geometry import SE3, Camera, CameraRig, HandEye, KnownCamera, WorkPlane
 from vision_robot.tracks import Tracks
 
-__all__ = ["SUBJECTS"]
+__all__ = ["GOALS_CSV", "POSE", "POSES_CSV", "SMALL", "SUBJECTS", "picture"]
 
 RNG = np.random.default_rng(0)
 SMALL = Camera(64, 48, 60.0, 61.0, 31.0, 24.0, 0.0, "brown5", (-0.1, 0.02, 1e-3, -1e-3, 0.0))
 POSE = SE3.from_rotvec(np.array([3.0, 0.1, 0.05]), np.array([0.01, -0.02, 0.5]))
 
 
-def _picture(seed: int = 0, size: tuple[int, int] = (64, 48)) -> np.ndarray:
+def picture(seed: int = 0, size: tuple[int, int] = (64, 48)) -> np.ndarray:
     x, y = np.meshgrid(np.arange(size[0]), np.arange(size[1]))
     smooth = 120 + 60 * np.sin(x / 7 + seed) + 50 * np.cos(y / 5)
     return np.stack([smooth, 240 - smooth, 255 - smooth], axis=-1).astype(np.uint8)
@@ -377,7 +377,7 @@ def _dataset() -> Subject:
         for name in ("frames", "truth/flow", "truth/masks"):
             (place / name).mkdir(parents=True)
         for i in range(3):
-            cv2.imwrite(str(place / f"frames/{i:06d}.png"), _picture(i))
+            cv2.imwrite(str(place / f"frames/{i:06d}.png"), picture(i))
             (place / f"truth/masks/{i:06d}.png").write_bytes(encode_ids(np.eye(48, 64, dtype=np.int64)))
         for i in range(2):
             flow = FlowField(np.ones((48, 64, 2), np.float32), np.zeros((48, 64), bool))
@@ -398,7 +398,7 @@ def _dataset() -> Subject:
         (place / "dataset.json").write_text(json.dumps(described))
         views = {key: described[key] for key in ("schema", "recipe", "camera")}
         (folder / "1/frames").mkdir(parents=True)
-        cv2.imwrite(str(folder / "1/frames/0.png"), _picture())
+        cv2.imwrite(str(folder / "1/frames/0.png"), picture())
         (folder / "1/dataset.json").write_text(json.dumps({**views, "views": [{"image": "frames/0.png"}]}))
         return [place, folder / "1"]
 
@@ -425,7 +425,7 @@ def _mot() -> Subject:
         (place / "gt/gt.txt").write_text(gt)
         (place / "seqinfo.ini").write_text(info)
         for i in (1, 2):
-            cv2.imwrite(str(place / f"img1/{i:06d}.png"), _picture(i))
+            cv2.imwrite(str(place / f"img1/{i:06d}.png"), picture(i))
         return [place]
 
     return Subject("dataset MOTChallenge", make, lambda folder: _walk(open_dataset(folder)))
@@ -439,7 +439,7 @@ def _otb() -> Subject:
         (place / "img").mkdir(parents=True)
         (place / "groundtruth_rect.txt").write_text("10,20\t5 6\n11,20,5,6\n0,0,0,0\n")
         for i in (1, 2, 3):
-            cv2.imwrite(str(place / f"img/{i:04d}.png"), _picture(i))
+            cv2.imwrite(str(place / f"img/{i:04d}.png"), picture(i))
         return [place]
 
     return Subject("dataset OTB", make, lambda folder: _walk(open_dataset(folder)))
@@ -453,7 +453,7 @@ def _middlebury() -> Subject:
         place = folder / "0"
         place.mkdir()
         for i in (10, 11):
-            cv2.imwrite(str(place / f"frame{i}.png"), _picture(i))
+            cv2.imwrite(str(place / f"frame{i}.png"), picture(i))
         write_flow(
             FlowField(np.ones((48, 64, 2), np.float32), np.zeros((48, 64), bool)), place / "flow10.flo"
         )
@@ -497,12 +497,12 @@ def _note() -> Subject:
 def _image(suffix: str, samples: np.ndarray | None = None) -> Subject:
     from vision_robot.images import read_image
 
-    given = [_picture()] if samples is None else [samples]
+    given = [picture()] if samples is None else [samples]
     if suffix == ".png" and samples is None:
-        given += [_picture()[..., 0], np.dstack([_picture(), _picture()[..., :1]])]
+        given += [picture()[..., 0], np.dstack([picture(), picture()[..., :1]])]
 
-    def write(picture: np.ndarray) -> Callable[[Path], object]:
-        return lambda path: path.write_bytes(cv2.imencode(suffix, picture)[1].tobytes())
+    def write(given: np.ndarray) -> Callable[[Path], object]:
+        return lambda path: path.write_bytes(cv2.imencode(suffix, given)[1].tobytes())
 
     name = f"picture {suffix}" + ("" if samples is None else " 16 bits")
     return Subject(name, _written(f"a{suffix}", *map(write, given)), lambda folder: read_image(_only(folder)))
@@ -515,7 +515,7 @@ def _video(suffix: str) -> Subject:
     def write(path: Path) -> None:
         with VideoWriter(path, (64, 48), 25) as writer:
             for i in range(8):
-                writer.write(_picture(i))
+                writer.write(picture(i))
 
     def read(folder: Path) -> object:
         for frame in Video(_only(folder)):
@@ -648,7 +648,7 @@ SUBJECTS = {
         _ids(),
         _note(),
         *(_image(suffix) for suffix in (".png", ".jpg", ".tif", ".bmp", ".webp", ".jp2", ".ppm")),
-        _image(".png", _picture().astype(np.uint16) * 200),
+        _image(".png", picture().astype(np.uint16) * 200),
         *(_video(suffix) for suffix in (".avi", ".mp4", ".mkv", ".webm")),
         _line(),
         _scores(),

@@ -34,7 +34,7 @@ class Subject:
         """The good inputs as names and bytes."""
         folder.mkdir(parents=True)
         made = self.make(folder)
-        found = [
+        found: list[Files] = [
             {
                 str(path.relative_to(one)): path.read_bytes()
                 for path in sorted(one.rglob("*"))

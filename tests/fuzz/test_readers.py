@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from tests.fuzz.readers import SUBJECTS
 from tests.fuzz.subject import Case, attempt
 
-EXAMPLES = 15
+EXAMPLES = 10
 
 
 @pytest.fixture(scope="module", params=SUBJECTS)

@@ -44,6 +44,41 @@ def test_dials_are_found_and_breakdowns_shown():
     assert "Where methods break" in render_page(benchmark_page("trackers", found, metric="hota"))
 
 
+def test_a_dial_of_errors_breaks_where_they_rise():
+    rng, found = np.random.default_rng(0), list[Outcome]()
+    for s in range(5):
+        figures = {"ours": list(0.3 * s + rng.normal(0, 0.01, 10)), "theirs": list(2 * s + np.zeros(10))}
+        found += outcomes(figures, "flow_epe_px", f"speed={s:g}")
+    (dial,) = dials_of([f"speed={s:g}" for s in range(5)])
+    _, _, ours = measured(dial, found, "flow_epe_px", "ours", threshold=1.0)  # type: ignore[misc]
+    assert ours.severity == np.clip(ours.severity, 3.2, 3.5)  # 0.3 s = 1 at 3.33
+    _, _, theirs = measured(dial, found, "flow_epe_px", "theirs", threshold=1.0)  # type: ignore[misc]
+    assert (theirs.severity, theirs.low, theirs.high) == (0.5, 0.5, 0.5)
+    cell = found[-1].cell
+    failed = [Outcome(cell, {}, "it hung", 1, 1) if one.cell == cell else one for one in found]
+    _, scores, theirs = measured(dial, failed, "flow_epe_px", "theirs", threshold=9)  # type: ignore[misc]
+    assert np.isinf(scores[-1, -1])
+    assert theirs.severity == 4
+    text = render_page(benchmark_page("flow", failed, metric="flow_epe_px", threshold=1.0))
+    assert "mean flow_epe_px rises over 1.00" in text
+    assert "it hung" in text
+
+
+def test_failures_of_one_reason_are_one_line():
+    found = [
+        Outcome(Cell("s", f"scene {k % 3}", "klt", k, "m:f"), {}, "ValueError: no <b>", 0.1, 1)
+        for k in range(9)
+    ]
+    text = render_page(benchmark_page("s", [*made(3), *found], metric="hota"))
+    assert text.count("ValueError: no &lt;b&gt;") == 1
+    assert "scene 0, scene 1 and scene 2" in text
+
+
+def test_nothing_but_failures_makes_a_page():
+    one = Outcome(Cell("s", "scene", "klt", 0, "m:f"), {}, "ValueError: no", 0.1, 1)
+    assert "No method has a figure" in render_page(benchmark_page("s", [one], metric="hota"))
+
+
 def test_a_failure_is_told_and_ranks_last():
     found = made(6)
     cell = found[0].cell

@@ -39,11 +39,13 @@ def test_trackers_are_run_where_they_matter_or_where_they_are_asked_for():
 
 
 def test_a_cell_measures_an_episode_and_a_fault_costs_what_it_costs():
-    figures = grasp_figures(Path(), "open", 1, {})
+    measured = grasp_figures(Path(), "open", 1, {}, strip=True)
+    assert str(measured.strip).startswith("data:image/jpeg")
+    figures = measured.figures
     assert figures["grasp_success"] == figures["place_success"] == 1
     assert figures["position_error_mm"] < 2
     assert figures["pick_s"] > 3
-    knocked = grasp_figures(Path(), "open", 1, SCENES["camera-rotation-deg=2"])
+    knocked = grasp_figures(Path(), "open", 1, SCENES["camera-rotation-deg=2"]).figures
     assert knocked["grasp_success"] == 0
     assert knocked["position_error_mm"] > 10
 

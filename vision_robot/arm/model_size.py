@@ -12,15 +12,16 @@ from vision_robot.reading import LARGEST_TREE, read_bytes, xml_root
 
 __all__ = ["refuse_oversized"]
 
+MOST_COPIES = 5_000
+"""MuJoCo takes seconds for 10 000 bodies, and a hundred times as long for ten times as many."""
 COUNTS = {
-    "replicate": (("count",), 5_000),
-    "composite": (("count",), 5_000),
-    "flexcomp": (("count",), 5_000),
+    "replicate": (("count",), MOST_COPIES),
+    "composite": (("count",), MOST_COPIES),
+    "flexcomp": (("count",), MOST_COPIES),
     "hfield": (("nrow", "ncol"), 100_000_000),
     "texture": (("width", "height"), 100_000_000),
 }
-"""Element -> those of its attributes whose product says how many things it stands for, and how many there
-may be. MuJoCo takes seconds for 10 000 bodies, and a hundred times as long for ten times as many."""
+"""Element -> the attributes whose product says how many things it stands for, and the most allowed."""
 
 MOST_NUMBERS = 10_000
 """Each number of <size> but those that only reserve memory, which MuJoCo refuses itself."""
@@ -60,7 +61,7 @@ def _count(element: Element) -> tuple[float, int]:
     if element.tag == "size":
         numbers = (_product(value) for name, value in element.items() if name not in RESERVING)
         return max(numbers, default=1.0), MOST_NUMBERS
-    names, most = COUNTS.get(element.tag, ((), 1))
+    names, most = COUNTS.get(element.tag, ((), MOST_COPIES))
     return math.prod(_product(element.get(name, "1")) for name in names), most
 
 

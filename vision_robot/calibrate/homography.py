@@ -32,7 +32,10 @@ def fit_homographies(
     target, normalise_target = _normalise(pixels, weight)
     H = _direct_linear_transform(source, target, weight)
     for _ in range(iterations):
-        H, step = _gauss_newton_step(H, source, target, weight)
+        try:
+            H, step = _gauss_newton_step(H, source, target, weight)
+        except np.linalg.LinAlgError:  # corners on a line: the linear answer is as good as any
+            break
         if step < 1e-12:
             break
     H = np.linalg.inv(normalise_target) @ H @ normalise_source

@@ -6,7 +6,7 @@ from pathlib import Path
 from vision_robot.errors import BadDataset
 from vision_robot.images import IMAGE_SUFFIXES, read_image
 
-__all__ = ["numbered_pictures", "picture_size"]
+__all__ = ["inside", "numbered_pictures", "picture_size"]
 
 
 def numbered_pictures(folder: Path, layout: str) -> list[Path]:
@@ -30,6 +30,14 @@ def numbered_pictures(folder: Path, layout: str) -> list[Path]:
         missing = next(number for number in range(first, last + 1) if number not in numbered)
         raise BadDataset(folder, f"frame {missing} of {first} to {last} is missing")
     return [numbered[number] for number in range(first, last + 1)]
+
+
+def inside(folder: Path, name: str) -> Path:
+    """What a dataset calls `name`. Raises BadDataset where that leads out of the folder, or is no name."""
+    parts = Path(name).parts
+    if Path(name).is_absolute() or ".." in parts or "\0" in name or any(len(part) > 250 for part in parts):
+        raise BadDataset(folder, f"it names {name[:100]!r}, which is no place in it")
+    return folder / name
 
 
 def picture_size(path: Path) -> tuple[int, int]:

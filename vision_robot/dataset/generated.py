@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from vision_robot.dataset.dataset import Dataset, DatasetObject, even_times
-from vision_robot.dataset.folder import picture_size
+from vision_robot.dataset.folder import inside, picture_size
 from vision_robot.dataset.layout import Layout
 from vision_robot.errors import BadCameraFile, BadDataset
 from vision_robot.formats import read_camera
@@ -58,7 +58,7 @@ def _video(folder: Path, described: dict[str, Any]) -> Dataset:
         raise ValueError(f"fps is {fps}")
     truth = described["truth"]
     width, height = (_count(side, MAX_SIDE) for side in described["size"])
-    source = [folder / name for name in _numbered(described["frames"]["pattern"], range(count))]
+    source = [inside(folder, name) for name in _numbered(described["frames"]["pattern"], range(count))]
     return Dataset(
         name=str(described["recipe"]),
         path=folder,
@@ -67,7 +67,7 @@ def _video(folder: Path, described: dict[str, Any]) -> Dataset:
         fps=fps,
         source=source,
         times_s=even_times(count, fps),
-        truth=Tracks.read(_inside(folder, truth["tracks"])),
+        truth=Tracks.read(inside(folder, truth["tracks"])),
         camera=_camera(folder),
         cam_from_station=_poses(folder, described, count),
         objects=tuple(_object(one) for one in described["objects"]),
@@ -79,7 +79,7 @@ def _video(folder: Path, described: dict[str, Any]) -> Dataset:
 
 
 def _views(folder: Path, described: dict[str, Any]) -> Dataset:
-    source = [_inside(folder, view["image"]) for view in described["views"]]
+    source = [inside(folder, view["image"]) for view in described["views"]]
     if not source:
         raise BadDataset(folder, "it has no views")
     return Dataset(
@@ -105,7 +105,7 @@ def _camera(folder: Path) -> Any:
 
 def _poses(folder: Path, described: dict[str, Any], count: int) -> SE3 | None:
     if "camera_motion" in described:
-        path = _inside(folder, described["camera_motion"])
+        path = inside(folder, described["camera_motion"])
         rows = [row for _, row in csv_rows(read_text(path, BadDataset, LARGEST_TABLE), path, BadDataset)]
         table = np.array(rows[1:], dtype=float)
         if table.shape != (count, 7) or not np.isfinite(table).all():
@@ -125,7 +125,9 @@ def _files(folder: Path, where: dict[str, Any] | None, count: int) -> dict[int, 
     if not where:
         return {}
     frames = range(count - int(where.get("step", 0)))
-    return {i: folder / name for i, name in zip(frames, _numbered(where["pattern"], frames), strict=True)}
+    return {
+        i: inside(folder, name) for i, name in zip(frames, _numbered(where["pattern"], frames), strict=True)
+    }
 
 
 def _count(value: Any, most: int) -> int:
@@ -133,13 +135,6 @@ def _count(value: Any, most: int) -> int:
     if not (isinstance(value, int) and 1 <= value <= most):
         raise ValueError(f"{value!r} is no whole number from 1 to {most}")
     return value
-
-
-def _inside(folder: Path, name: str) -> Path:
-    """A file of the dataset; a name that leads out of the folder is refused."""
-    if Path(name).is_absolute() or ".." in Path(name).parts:
-        raise ValueError(f"{name!r} leads out of the folder")
-    return folder / name
 
 
 def _numbered(pattern: str, numbers: range) -> list[str]:

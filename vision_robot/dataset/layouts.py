@@ -31,10 +31,10 @@ def open_dataset(path: Path | str, layout: str | None = None) -> Dataset:
     if not folder.is_dir():
         raise BadDataset(path, "there is no such folder")
     if layout:
-        return _layout(layout).read(folder)
+        return _read(layout, folder)
     name = recognised(folder)
     if name is not None:
-        return _layout(name).read(folder)
+        return _read(name, folder)
     marks = ", ".join(f"{_layout(name).mark} ({name})" for name in LAYOUTS)
     raise BadDataset(path, f"none of these is in it: {marks}")
 
@@ -42,6 +42,13 @@ def open_dataset(path: Path | str, layout: str | None = None) -> Dataset:
 def recognised(folder: Path) -> str | None:
     """The layout a folder has, by the file that marks it."""
     return next((name for name in LAYOUTS if _layout(name).recognises(folder)), None)
+
+
+def _read(name: str, folder: Path) -> Dataset:
+    try:
+        return _layout(name).read(folder)
+    except OSError as error:  # such as names in its tables that are too long to be names
+        raise BadDataset(folder, error.strerror or str(error)) from error
 
 
 def _layout(name: str) -> Layout:

@@ -12,7 +12,7 @@ import numpy as np
 
 from vision_robot.dataset.box_tracks import tracks_of_boxes
 from vision_robot.dataset.dataset import Dataset, even_times
-from vision_robot.dataset.folder import numbered_pictures, picture_size
+from vision_robot.dataset.folder import inside, numbered_pictures, picture_size
 from vision_robot.dataset.layout import Layout
 from vision_robot.dataset.numbers import read_numbers
 from vision_robot.errors import BadDataset, BadTable
@@ -36,7 +36,7 @@ def recognises(folder: Path) -> bool:
 def read(folder: Path) -> Dataset:
     """A MOTChallenge sequence as a dataset. Raises BadDataset or BadTable for what is no such folder."""
     info = _sequence(folder / "seqinfo.ini")
-    pictures = folder / info.get("imdir", "img1")
+    pictures = inside(folder, info.get("imdir", "img1"))
     fps = _number(folder, info, "framerate", USUAL_FPS)
     source = Video(pictures) if pictures.is_file() else numbered_pictures(pictures, "MOTChallenge")
     count = (source.frame_count or 0) if isinstance(source, Video) else len(source)

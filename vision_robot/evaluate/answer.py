@@ -34,13 +34,13 @@ class Standing:
 
     @property
     def verdict(self) -> str:
-        """`first`, `behind`, `equal`, `open`, `ahead` (in the mean, though it ranks lower) or `apart`."""
+        """`first`, `behind`, `same`, `equal`, `open`, `ahead` (in the mean, not in rank) or `apart`."""
         if self.pair is None:
             return "apart"
         if self.pair.better == self.pair.worse:
             return "first"
         if self.pair.verdict != "better":
-            return {"equivalent": "equal", "open": "open"}[self.pair.verdict]
+            return {"same": "same", "equivalent": "equal", "open": "open"}[self.pair.verdict]
         return "ahead" if self.pair.better == self.method else "behind"
 
 
@@ -132,7 +132,7 @@ def answer_words(found: Answer) -> list[tuple[str, str]]:
     unit, name = unit_words(found.metric), found.metric.name
     where = f"on {found.scene}" if found.scene != EVERYWHERE else _over(found)
     value = f"{first.mean.value:.3g}{unit}"
-    if np.isfinite(first.mean.low):
+    if np.isfinite(first.mean.low) and first.mean.low < first.mean.high:
         value += f" ({range_words(first.mean)})"
     if not others:
         return [("note", f"{first.method} has {name} {value} {where}; there is nothing to compare it with.")]
@@ -155,7 +155,9 @@ def answer_words(found: Answer) -> list[tuple[str, str]]:
             f"{seeds}.",
         )
     ]
-    equal, unsettled, ahead = (found.those(verdict) for verdict in ("equal", "open", "ahead"))
+    same, equal, unsettled, ahead = (found.those(verdict) for verdict in ("same", "equal", "open", "ahead"))
+    if same:
+        words.append(("note", f"The same as {first.method} on every scene and seed: {_names(same)}."))
     if equal:
         zone = max(one.pair.zone for one in equal if one.pair)
         text = f"Practically equal to {first.method} (within {zone:.2g}{unit}): {_names(equal)}."

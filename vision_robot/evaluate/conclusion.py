@@ -51,12 +51,16 @@ class Comparison:
     """With fewer no difference at all can show among so many pairs."""
     detectable: float | None = None
     """Smallest difference that these seeds would show four times in five."""
+    same: bool = False
+    """Whether their figures are the same on every scene and seed: seen to be, which no test can better."""
     failed: int = 0
     """Scenes and seeds left out because one of the two failed there."""
 
     @property
     def verdict(self) -> str:
-        """`better`, `equivalent` or `open`."""
+        """`same`, `equivalent`, `better` or `open`."""
+        if self.same:
+            return "same"
         if self.equivalent:
             return "equivalent"
         return "better" if self.p < LEVEL else "open"
@@ -108,7 +112,7 @@ def _compared(
         needed = max(needed, least, test.difference.n + 1)
     smallest = detectable(by_seed, level=level) if test.difference.n >= least else None
     told = (test.difference, test.p, test.equivalent, zone, needed, least, smallest)
-    return Comparison(metric, scene, better, worse, *told)
+    return Comparison(metric, scene, better, worse, *told, same=bool((ours == theirs).all()))
 
 
 def _table(
@@ -137,6 +141,11 @@ def sentence(one: Comparison) -> str:
     seeds = f"{found.n} seed{'s' if found.n > 1 else ''}"
     where = f"{one.scene}: "
     left_out = f"; {one.failed} runs in which one of them failed do not count here" if one.failed else ""
+    if one.verdict == "same":
+        return (
+            f"{where}{one.better} and {one.worse} have the same {one.metric.name} on every scene and seed "
+            f"({seeds}){left_out}"
+        )
     if one.verdict == "equivalent":
         return (
             f"{where}{one.better} and {one.worse} are practically equal in {one.metric.name} "

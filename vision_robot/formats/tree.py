@@ -68,10 +68,10 @@ class Tree:
 
     def number_text(self) -> str:
         """A finite number, as written in the file."""
-        plain = isinstance(self.value, str) and is_number(self.value)
-        if not plain or abs(float(self.value)) > LARGEST_NUMBER:
-            raise self.bad(f"a finite number expected, {_short.repr(self.value)} found")
-        return self.value
+        value = self.value
+        if not (isinstance(value, str) and is_number(value) and abs(float(value)) <= LARGEST_NUMBER):
+            raise self.bad(f"a finite number expected, {_short.repr(value)} found")
+        return value
 
     def number(self) -> float:
         """A finite number."""

@@ -101,12 +101,15 @@ def _turned(chain: SerialChain, turn_rad: float) -> SerialChain:
 
 
 def _table_for(solver: InverseKinematics, world: World, source: str) -> SE3:
-    """The nearest place ahead of the base where the arm reaches all of the table that is picked from."""
+    """A place ahead of the base where the arm reaches all of the table that is picked from.
+
+    The middle one of those on a level, so that the arm is neither folded nor stretched.
+    """
     for level in LEVELS_M:
-        for ahead in DISTANCES_M:
-            station = SE3(np.eye(3), np.array([float(ahead), 0.0, level]))
-            if _reaches_all(solver, station, world):
-                return station
+        stations = [SE3(np.eye(3), np.array([float(ahead), 0.0, level])) for ahead in DISTANCES_M]
+        reached = [one for one in stations if _reaches_all(solver, one, world)]
+        if reached:
+            return reached[len(reached) // 2]
     left, bottom, right, top = world.design.scatter_m
     size = f"{1000 * (right - left):.0f} x {1000 * (top - bottom):.0f} mm"
     raise BadArm(source, f"it reaches no table of {size} with its tool straight down")

@@ -13,13 +13,15 @@ from vision_robot.report.benchmark_figures import titled
 from vision_robot.report.page import Facts, Paragraph, Part, Remarks, Section, Table
 from vision_robot.report.quantity import compact, listed
 
-__all__ = ["answer_section", "interval_cell", "scene_section", "summary_table"]
+__all__ = ["EQUAL", "answer_section", "interval_cell", "scene_section", "summary_table"]
 
 ABOUT_WORDS = (
     "A method is called better only where a paired test over seeds says so after correction for the number "
     "of pairs (Holm, 5 %), and two are called practically equal only where the test for that says so; the "
     "rest is not settled."
 )
+
+EQUAL = {"same": "the same throughout", "equal": "practically equal"}
 
 
 def answer_section(outcomes: Sequence[Outcome], found: Answer | None) -> Section:
@@ -66,14 +68,14 @@ def scene_section(outcomes: Sequence[Outcome], scenes: Sequence[str], metric: st
         first = found.standings[0]
         about = f"{first.method}, {compact(first.mean.value)}{unit_words(found.metric)}"
         equal, unsettled, behind = (
-            listed([one.method for one in found.those(verdict)], 4) or "–"
-            for verdict in ("equal", "open", "behind")
+            listed([one.method for verdict in verdicts for one in found.those(verdict)], 4) or "–"
+            for verdicts in (EQUAL, ("open",), ("behind",))
         )
         rows.append((scene, found.winner or "nobody", about, equal, unsettled, behind))
     if not rows:
         return None
     table = Table(
-        ("scene", "better than all others", "first in rank", "practically equal", "not settled", "behind"),
+        ("scene", "better than all others", "first in rank", "equal to it", "not settled", "behind"),
         tuple(rows),
         f"By {metric}, each scene for itself; pairs are corrected within a scene, not over the scenes.",
         pinned=True,
@@ -108,8 +110,8 @@ def _standing(one: Standing, found: Answer) -> str:
     if one.pair is None:
         return "nothing in common"
     unit, difference = unit_words(found.metric), one.pair.difference
-    if one.verdict == "equal":
-        return "practically equal"
+    if one.verdict in EQUAL:
+        return EQUAL[one.verdict]
     if one.verdict == "open":
         return f"not settled: {needed_words(one.pair)}"
     word = "better by" if one.verdict == "ahead" else "behind by"

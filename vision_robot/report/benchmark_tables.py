@@ -10,7 +10,7 @@ from vision_robot.evaluate.metrics import metric_named
 from vision_robot.evaluate.score import Score, failures
 from vision_robot.evaluate.statistics import Breakdown, Interval
 from vision_robot.evaluate.sweep import Outcome
-from vision_robot.report.benchmark_answer import interval_cell
+from vision_robot.report.benchmark_answer import EQUAL, interval_cell
 from vision_robot.report.page import Paragraph, Section, Table
 from vision_robot.report.quantity import compact, listed
 
@@ -88,7 +88,7 @@ def power_section(found: Answer | None) -> Section | None:
     rows = tuple(
         (
             one.method,
-            {"equal": "practically equal", "open": "not settled"}.get(one.verdict, one.verdict),
+            {**EQUAL, "open": "not settled"}.get(one.verdict, one.verdict),
             compact(pair.difference.value),
             compact(pair.detectable) if pair.detectable is not None else "nothing yet",
             str(pair.difference.n),

@@ -2,13 +2,15 @@
 
 import json
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from math import isfinite
 from pathlib import Path
 from typing import IO, Self
 
 import numpy as np
 
-from vision_robot.errors import BadParameter
+from vision_robot.errors import BadParameter, UnwritableOutput
 from vision_robot.files import atomic_path
 from vision_robot.tracks import Tracks
 
@@ -26,19 +28,36 @@ class RowWriter(ABC):
         temporary = self._place.__enter__()
         self._file: IO[str] = temporary.open("w", encoding="utf-8", newline="")
         self._count = 0
+        self._broken: OSError | None = None
         return self
 
     def write(self, tracks: Tracks) -> None:
         """Append rows."""
         if len(tracks):
-            self._append(self._file, tracks, first=self._count == 0)
+            with self._noting():
+                self._append(self._file, tracks, first=self._count == 0)
+                self._file.flush()
             self._count += len(tracks)
 
     def __exit__(self, *exception: object) -> None:
-        self._end(self._file, empty=self._count == 0)
-        self._file.close()
+        with suppress(OSError), self._noting():
+            self._end(self._file, empty=self._count == 0)
+            self._file.close()
+        if self._broken is not None:  # the disk is full, and what is written ends anywhere
+            error = UnwritableOutput(self.path, self._broken.strerror or str(self._broken))
+            self._place.__exit__(type(error), error, None)
+            raise error
         # Rows of a video cut short are worth as much as those before any other end.
         self._place.__exit__(None, None, None)
+
+    @contextmanager
+    def _noting(self) -> Iterator[None]:
+        """Python forgets what it could not write, and closes the file as if nothing were missing."""
+        try:
+            yield
+        except OSError as error:
+            self._broken = error
+            raise
 
     @abstractmethod
     def _append(self, file: IO[str], tracks: Tracks, *, first: bool) -> None: ...

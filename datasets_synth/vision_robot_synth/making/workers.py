@@ -6,6 +6,7 @@ import signal
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from multiprocessing.connection import Connection
 
 import cv2
 
@@ -35,12 +36,15 @@ def make_frames(scene: Scene, workshop: Workshop, frames: list[int], workers: in
         return
     size = max(1, min(LONGEST, len(frames) // (3 * workers)))
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, context, _begin, (scene, workshop)) as pool:
+    watched, held = context.Pipe(duplex=False)
+    with held, watched, ProcessPoolExecutor(workers, context, _begin, (scene, workshop, watched)) as pool:
         try:
             tasks = [pool.submit(_make, start, stop) for start, stop in _stretches(frames, size)]
             for task in as_completed(tasks):
                 yield from task.result()
         except BaseException:
+            # Whoever interrupts does not wait for frames under way; whole files are all that they leave.
+            held.close()
             pool.shutdown(wait=True, cancel_futures=True)
             raise
 
@@ -56,19 +60,20 @@ def _stretches(frames: list[int], longest: int) -> Iterator[tuple[int, int]]:
     yield start, stop
 
 
-def _begin(scene: Scene, workshop: Workshop) -> None:
+def _begin(scene: Scene, workshop: Workshop, watched: Connection) -> None:
     global _maker  # noqa: PLW0603 - a process has one OpenGL context
-    # An interrupt is the parent's to handle; when the parent is killed, nobody else tells us.
+    # An interrupt is the parent's to handle.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    threading.Thread(target=_end_with, args=(watched,), daemon=True).start()
     cv2.setNumThreads(1)
     _maker = Maker(scene, workshop)
 
 
-def _end_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
+def _end_with(watched: Connection) -> None:
+    """End when the other end is closed: by the parent, or with it when it is killed."""
+    try:
+        watched.recv()
+    except (EOFError, OSError):
         os._exit(1)
 
 

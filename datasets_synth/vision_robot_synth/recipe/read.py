@@ -143,5 +143,5 @@ def _known(recipe: str, where: str, table: Mapping[str, Any], known: list[str]) 
 
 
 def _nearest(word: str, known: list[str]) -> str:
-    close = get_close_matches(word, known, n=1)
+    close = get_close_matches(word, known, n=1) if len(word) < 100 else []
     return f" (do you mean {close[0]}?)" if close else ""

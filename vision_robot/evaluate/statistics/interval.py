@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from statistics import NormalDist
 
 import numpy as np
 
 from vision_robot.errors import BadParameter
-from vision_robot.types import Array, Float
+from vision_robot.types import Array, Float, Int
 
 __all__ = ["Interval", "clustered_interval", "wilson_interval"]
 
@@ -55,11 +56,15 @@ def clustered_interval(
 
         half = float(t.ppf((1 + confidence) / 2, k - 1) * means.std(ddof=1) / np.sqrt(k))
         return Interval(value, value - half, value + half, k)
-    draws = np.random.default_rng(seed).integers(k, size=(RESAMPLES, k))
-    resampled = np.sort(statistic(means[draws], axis=1))
+    resampled = np.sort(statistic(means[_draws(k, seed)], axis=1))
     low, high = _corrected_levels(resampled, value, means, statistic, confidence)
     ends = np.quantile(resampled, (low, high))
     return Interval(value, float(ends[0]), float(ends[1]), k)
+
+
+@cache
+def _draws(k: int, seed: int) -> Int[Array, "n k"]:
+    return np.random.default_rng(seed).integers(k, size=(RESAMPLES, k))
 
 
 def _corrected_levels(
@@ -69,7 +74,10 @@ def _corrected_levels(
     normal = NormalDist()
     below = (np.sum(resampled < value) + 0.5 * np.sum(resampled == value)) / len(resampled)
     bias = normal.inv_cdf(float(np.clip(below, 1e-4, 1 - 1e-4)))
-    without = np.array([statistic(np.delete(means, i)) for i in range(len(means))])
+    if statistic is np.mean:
+        without = (means.sum() - means) / (len(means) - 1)
+    else:
+        without = np.array([statistic(np.delete(means, i)) for i in range(len(means))])
     spread = without.mean() - without
     total = float((spread**2).sum())
     acceleration = float((spread**3).sum()) / (6 * total**1.5) if total > 0 else 0.0

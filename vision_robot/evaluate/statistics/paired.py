@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -10,7 +11,7 @@ from vision_robot.errors import BadParameter
 from vision_robot.evaluate.statistics.interval import Interval, clustered_interval
 from vision_robot.types import Array, Float
 
-__all__ = ["PairedTest", "compare_pairs", "holm"]
+__all__ = ["PairedTest", "compare_pairs", "holm", "sign_flip_p"]
 
 EXACT = 14
 """Up to so many clusters all sign changes are tried; above, as many as `DRAWS` by chance."""
@@ -52,23 +53,31 @@ def compare_pairs(
         off = np.bincount(place, weights=(ours - theirs)[known]) / np.bincount(place)
     order = np.arange(k)
     difference = clustered_interval(off, order, seed=seed)
-    inner = clustered_interval(off, order, confidence=1 - 2 * level, seed=seed)
-    equivalent = bool(-zone < inner.low and inner.high < zone)
-    return PairedTest(difference, _sign_flip_p(off, seed), equivalent)
+    equivalent = False
+    if abs(difference.value) < zone:
+        inner = clustered_interval(off, order, confidence=1 - 2 * level, seed=seed)
+        equivalent = bool(-zone < inner.low and inner.high < zone)
+    return PairedTest(difference, sign_flip_p(off, seed), equivalent)
 
 
-def _sign_flip_p(off: Float[Array, "k"], seed: int) -> float:
+def sign_flip_p(off: Float[Array, "k"], seed: int = 0) -> float:
+    """Chance of a sum at least as far from zero if each of the k differences had either sign."""
     k = len(off)
     if k == 0:
         return 1.0
     observed = abs(off.sum())
     slack = 1e-12 * np.abs(off).sum()
     if k <= EXACT:
-        signs = np.array(list(product((-1.0, 1.0), repeat=k)))
-        return float(np.mean(np.abs(signs @ off) >= observed - slack))
+        return float(np.mean(np.abs(_signs(k) @ off) >= observed - slack))
     signs = np.random.default_rng(seed).integers(0, 2, size=(DRAWS, k)) * 2.0 - 1.0
     reached = int(np.sum(np.abs(signs @ off) >= observed - slack))
     return (reached + 1) / (DRAWS + 1)
+
+
+@cache
+def _signs(k: int) -> Float[Array, "n k"]:
+    """All choices of signs; of two opposite ones only one, since sums are taken without their sign."""
+    return np.array([(1.0, *rest) for rest in product((-1.0, 1.0), repeat=k - 1)])
 
 
 def holm(p: Sequence[float]) -> Float[Array, "m"]:

@@ -6,7 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
-from vision_robot.evaluate.statistics.paired import compare_pairs, holm
+from vision_robot.evaluate.statistics.paired import holm, sign_flip_p
 from vision_robot.types import Array, Bool, Float
 
 __all__ = ["Ranking", "rank_methods"]
@@ -44,7 +44,7 @@ def rank_methods(
 ) -> Ranking:
     """Rank within each block (scene and seed), average, and test all pairs on the values themselves.
 
-    Pairs are compared by `compare_pairs` over `clusters` (blocks,) and corrected by Holm, which Benavoli,
+    Pairs are compared by `sign_flip_p` over `clusters` (blocks,) and corrected by Holm, which Benavoli,
     Corani & Mangili (2016) recommend over tests on mean ranks, since those depend on who else takes part.
     Blocks where any method has no value are left out.
     """
@@ -56,7 +56,8 @@ def rank_methods(
     ranks = rankdata(-kept if higher_is_better else kept, axis=1).mean(axis=0) if len(kept) else np.ones(m)
     order = np.argsort(ranks, kind="stable")
     pairs = list(combinations(range(m), 2))
-    raw = [compare_pairs(kept[:, order[a]], kept[:, order[b]], names, seed=seed).p for a, b in pairs]
+    by_cluster = np.array([kept[names == name].mean(axis=0) for name in np.unique(names)]).reshape(-1, m)
+    raw = [sign_flip_p(by_cluster[:, order[a]] - by_cluster[:, order[b]], seed) for a, b in pairs]
     p = np.ones((m, m))
     for (a, b), value in zip(pairs, holm(raw), strict=True):
         p[a, b] = p[b, a] = value

@@ -51,5 +51,5 @@ def without_ignored(truth: Tracks, ignored: Tracks, answer: Tracks) -> Tracks:
 
 def _matched(overlap: Float[Array, "n m"]) -> Iterator[tuple[int, int]]:
     alike = np.where(np.nan_to_num(overlap) >= SAME, overlap, 0.0)
-    pairs: tuple[Int[Array, k], Int[Array, k]] = linear_sum_assignment(-alike)
+    pairs = linear_sum_assignment(-alike)
     return ((int(a), int(b)) for a, b in zip(*pairs, strict=True) if alike[a, b] > 0)

@@ -11,7 +11,7 @@ from vision_robot.pick.servo.stage import Glimpse
 from vision_robot.pick.sighting import Sighting
 from vision_robot.types import Array, Float
 
-__all__ = ["CameraShift", "camera_shift"]
+__all__ = ["EXACT_PX", "CameraShift", "camera_shift"]
 
 MOST_STEPS, DONE = 12, 1e-10
 

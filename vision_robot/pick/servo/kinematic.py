@@ -64,10 +64,11 @@ class KinematicStage:
         self.time_s += seconds
 
     def look(self) -> Glimpse:
-        """The label through the true camera; raises NothingSeen outside its field or where sight is lost."""
+        """The label through the true camera; raises NothingSeen outside the picture and when lost."""
+        camera = self.true_plane.camera
         pixel = self.true_plane.pixels(self._real[None, :2], z_m=float(self._real[2]))[0]
-        dark = self.time_s >= self.dark_from_s or self._chance.random() < self.lost_sight
-        if dark or not np.isfinite(pixel).all():
+        inside = ((pixel >= 0) & (pixel <= [camera.width - 1, camera.height - 1])).all()  # not where NaN
+        if not inside or self.time_s >= self.dark_from_s or self._chance.random() < self.lost_sight:
             raise NothingSeen("kinematic", LABEL_ON_HAND)
         noisy = pixel + self._chance.normal(0, self.noise_px, 2)
         return Glimpse(self.time_s, noisy, self._told, self.noise_px)

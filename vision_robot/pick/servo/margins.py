@@ -8,7 +8,7 @@ from vision_robot.types import Array, Float
 
 __all__ = ["critical_gain_per_s", "critical_latency_s", "growth", "mismatch"]
 
-MOST_FRAMES = 60
+MOST_FRAMES = 30
 
 
 def growth(
@@ -54,7 +54,7 @@ def critical_gain_per_s(
     def calm(gain: float) -> bool:
         return growth(gain, delay, mismatch, compensate=compensate, follow=follow) < 1
 
-    gains = np.linspace(1e-3, 1.0, 400)
+    gains = np.linspace(1e-3, 1.0, 80)
     wild = np.flatnonzero([not calm(float(gain)) for gain in gains])
     if not len(wild):
         return np.inf
@@ -75,7 +75,7 @@ def critical_latency_s(
     compensate: bool = True,
     lag_s: float = 0.0,
 ) -> float:
-    """The least latency [s], in whole pictures, at which the loop no longer calms down; infinite past 2 s."""
+    """The least latency [s], in whole pictures, at which the loop no longer calms down; infinite past 30."""
     gain, follow = min(1.0, gain_per_s * period_s), _follow(lag_s, period_s)
     for delay in range(MOST_FRAMES + 1):
         if growth(gain, delay, mismatch, compensate=compensate, follow=follow) >= 1:
