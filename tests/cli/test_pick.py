@@ -66,7 +66,7 @@ def test_a_film_that_cannot_be_written_is_refused_before_any_episode(capsys):
         (["--belt-speed", "60mm/s"], "no belt"),
         (["--belt-speed", "60mm", "--scene", "conveyor"], "60mm/s"),
         (["--tries", "0"], "tries"),
-        (["--recipe", "moon"], "single-rod"),
+        (["--recipe", "moon"], "vr synth --list"),
         (["--recipe", "single-rod", "--object", "rod"], "--recipe"),
         (["--arm", "nosuch.xml"], "no such file"),
         (["--arm", "arm.urdf"], "MJCF"),
