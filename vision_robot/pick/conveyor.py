@@ -189,14 +189,14 @@ def _meeting(attempt: Attempt, target: Target, motion: Motion) -> tuple[float, F
         start = now + float(wait)
         try:
             first = _joints(attempt, target, led(motion, start, 0.0), APPROACH_M, player.joints)
+            # It comes into reach: what fails from here on is time.
+            late, needed = True, player.seconds_to(first) + 0.1 + SPARE_S
             _joints(attempt, target, led(motion, start, ends_after), APPROACH_M, first)
         except Unreachable as error:
             short = error
             continue
-        needed = player.seconds_to(first) + 0.1 + SPARE_S
         if needed <= wait:
             return start, first
-        late = True
     if late or short is None:
         raise TooLate(attempt.item.name, speed, needed)
     raise short
