@@ -1,7 +1,7 @@
 # Every chore is one word. `make setup` first; `./vr` needs no make.
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
-.PHONY: setup test lint format types pins demo clean
+.PHONY: setup test lint format types docs pins demo clean
 
 UV := $(shell command -v uv || echo .venv/bin/uv)
 COMPILE := $(UV) pip compile pyproject.toml --universal --python-version 3.11 \
@@ -24,6 +24,10 @@ format:
 
 types:
 	.venv/bin/pyright --pythonpath .venv/bin/python
+
+docs:  ## the manual, in build/manual
+	$(UV) pip install --quiet --python .venv/bin/python -r requirements-docs.txt
+	.venv/bin/sphinx-build --quiet --fail-on-warning --jobs auto docs build/manual
 
 pins:  ## newest versions that fit together; each file holds only what the one before it lacks
 	$(COMPILE) --output-file requirements.txt > /dev/null

@@ -10,6 +10,7 @@ from typing import Any
 
 from vision_robot.evaluate.answer import answer, answer_words
 from vision_robot.evaluate.baseline import regressions
+from vision_robot.evaluate.claim import Claim, claim_words, findings
 from vision_robot.evaluate.conclusion import compare_methods
 from vision_robot.evaluate.score import Score, failures, scores
 from vision_robot.evaluate.sensitivity import without_variants
@@ -18,6 +19,12 @@ from vision_robot_cli.output import LimitMissed, note, plain
 
 __all__ = ["as_json", "as_text", "check_baseline", "write_reports", "write_tables"]
 
+MOST_LINES = 400
+"""Scores up to so many are printed in full."""
+
+CLAIM_METRICS = ("success_auc",)
+"""Claims are asked by these too: who follows well may not be who stays silent about the rest."""
+
 
 def as_json(runs: Sequence[SuiteRun]) -> dict[str, Any]:
     """The object of `vr benchmark --json`."""
@@ -25,17 +32,33 @@ def as_json(runs: Sequence[SuiteRun]) -> dict[str, Any]:
         "scores": [asdict(score) for score in _all_scores(runs)],
         "failures": [asdict(one) for run in runs for one in failures(run.outcomes)],
         "conclusions": [text for run in runs for text in _conclusions(run)],
+        "claims": [
+            {
+                "who": claim.who,
+                "method": claim.method,
+                "rivals": claim.rivals,
+                "metric": metric,
+                "words": words,
+            }
+            for run in runs
+            for claim, metric, words in _claims(run)
+        ],
         "comparisons": [one for run in runs for one in _comparisons(run)],
     }
 
 
 def as_text(runs: Sequence[SuiteRun]) -> str:
-    """Scores by suite, scene and metric, then what may be concluded."""
+    """Scores by suite, scene and metric, then what may be concluded; of long runs the metric that ranks."""
     lines: list[str] = []
     for run in runs:
         lines.append(run.suite.name)
+        shown = sorted(scores(run.outcomes), key=lambda one: (one.scene, one.metric))
+        short = len(shown) > MOST_LINES
+        if short:
+            usual = without_variants(run.outcomes)
+            shown = [one for one in scores(usual) if one.metric == run.suite.metric]
         last = ("", "")
-        for score in sorted(scores(run.outcomes), key=lambda one: (one.scene, one.metric)):
+        for score in shown:
             if (score.scene, score.metric) != last:
                 unit = f" [{score.unit}]" if score.unit else ""
                 lines.append(f"  {score.scene}: {score.metric}{unit}, {score.better} is better")
@@ -45,6 +68,8 @@ def as_text(runs: Sequence[SuiteRun]) -> str:
                   for one in failures(run.outcomes)]  # fmt: skip
         overall, *by_scene = _conclusions(run) or ["No method has a figure."]
         lines += [f"  {text}" for text in (*by_scene, overall)]  # last what is read first
+        lines += [f"  {text}" for _, _, words in _claims(run) for text in words]
+        lines += ["  all metrics: --json, --tables DIR, --report FILE"] if short else []
     return "\n".join(lines)
 
 
@@ -132,6 +157,14 @@ def _comparisons(run: SuiteRun) -> list[dict[str, Any]]:
         }
         for one in pairs
     ]
+
+
+def _claims(run: SuiteRun) -> list[tuple[Claim, str, list[str]]]:
+    """Each claim, the metric it is asked by, and what the run says of it; by the metrics that are shares."""
+    usual = without_variants(run.outcomes)
+    asked = [(claim, metric) for claim in run.suite.claims for metric in (run.suite.metric, *CLAIM_METRICS)]
+    told = [(claim, metric, claim_words(findings(usual, metric, claim), claim)) for claim, metric in asked]
+    return [one for one in told if one[2]]
 
 
 def _interval(score: Score) -> str:

@@ -4,11 +4,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from vision_robot import __version__
 from vision_robot.errors import BadParameter
 from vision_robot.evaluate.sweep import Outcome, Store, run_sweep
 from vision_robot.files import check_place
 from vision_robot_cli.output import note, ticking
 from vision_robot_synth.suites import SUITES, Plan, Suite, suite_named
+from vision_robot_synth.suites.rendered import Tidying
 
 __all__ = ["SuiteRun", "named_programs", "run_suites"]
 
@@ -41,14 +43,26 @@ def run_suites(
     suites = [suite_named(one, data) for one in (SUITES if name == ALL else [name])]
     check_place(folder / "results")
     store, runs = Store(folder), []
+    older = store.other_versions()
+    if older:
+        note(f"results of version {', '.join(older)} in {folder} are not used: {__version__} measures anew")
     for suite in suites:
         cells = suite.cells(plan)
-        known = sum(store.find(cell) is not None for cell in cells)
-        if known:
+        missing = [cell for cell in cells if store.find(cell) is None]
+        if len(missing) < len(cells):
+            known = len(cells) - len(missing)
             note(f"{suite.name}: {known} of {len(cells)} cells are known already, in {folder}")
+        asked = suite.video_of
+        tidying = Tidying(store.workspace, {cell.key: asked(cell) for cell in missing} if asked else {})
         with ticking(suite.name) as tick:
             outcomes = run_sweep(
-                cells, store, workers=workers, scheduler=scheduler, patience_s=patience_s, progress=tick
+                cells,
+                store,
+                workers=workers,
+                scheduler=scheduler,
+                patience_s=patience_s,
+                progress=tick,
+                done=lambda outcome, tidying=tidying: tidying.done(outcome.cell.key),
             )
         runs.append(SuiteRun(suite, outcomes))
     return runs

@@ -11,28 +11,35 @@ __all__ = ["demo"]
 
 
 def demo(
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for pictures, camera and page.")] = Path(
-        "demo"
-    ),
+    out: Annotated[
+        Path, typer.Option("-o", "--out", help="Folder for pictures, videos, camera and page.")
+    ] = Path("demo"),
     views: Annotated[int, typer.Option(help="Views of the board to render.")] = 24,
+    frames: Annotated[int, typer.Option(help="Frames of the video that is tracked.")] = 60,
+    episodes: Annotated[int, typer.Option(help="Picks under each of three conditions.")] = 4,
+    workers: Annotated[int, typer.Option(help="Processes.")] = 2,
     seed: Seed = 0,
     json: Json = False,
 ) -> None:
-    """Render a board, calibrate from the pictures, and show the camera found beside the truth.
+    """From camera to grasp: calibrate, measure the table, track, solve the arm, pick and place; one page.
 
     Example: vr demo -o demo
     """
-    from vision_robot.calibrate import Settings
-    from vision_robot_cli import calibration_input, calibration_output
-    from vision_robot_cli.calibration_verdict import reached
+    from vision_robot.errors import BadParameter
+    from vision_robot_cli import calibration_output, demo_output
+    from vision_robot_cli.demo_run import demo_run
     from vision_robot_cli.output import emit_json, note
 
-    given = calibration_input.rendered_folder(out / "boards", views, seed)
-    verdict = reached(given, [Settings()], seed)
-    calibration_output.write_camera_file(verdict.result, out / "camera.yaml", None)
-    calibration_output.write_report(verdict, given, out / "report.html", seed)
+    for name, value, least in (("--views", views, 1), ("--frames", frames, 10), ("--episodes", episodes, 1),
+                               ("--workers", workers, 1)):  # fmt: skip
+        if value < least:
+            raise BadParameter(name, value, f"a whole number from {least} on")
+    done = demo_run(out, views=views, frames=frames, episodes=episodes, workers=workers, seed=seed)
+    calibration_output.write_camera_file(done.verdict.result, out / "camera.yaml", None)
+    calibration_output.write_report(done.verdict, done.given, out / "calibration.html", seed)
+    demo_output.write_report(done, out / "report.html", seed)
     if json:
-        emit_json("demo", {"calibration": calibration_output.as_json(verdict, given, seed), "out": out})
+        emit_json("demo", demo_output.as_json(done, out, seed))
     else:
-        print(calibration_output.as_text(verdict, given))
+        print(demo_output.as_text(done))
     note(f"open {(out / 'report.html').resolve().as_uri()}")

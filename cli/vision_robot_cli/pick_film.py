@@ -13,16 +13,18 @@ from vision_robot.video import CODECS, VideoWriter
 __all__ = ["check_film", "stills_of", "write_film"]
 
 
-def check_film(path: Path) -> None:
-    """Raise BadParameter for a file that no film can be written to, before hours of episodes."""
+def check_film(path: Path, fps: float) -> None:
+    """Raise BadParameter for a film that cannot be, before hours of episodes."""
+    if not 0.1 <= fps <= 200:
+        raise BadParameter("--fps", fps, "from 0.1 to 200")
     if path.suffix.lower() not in CODECS:
         raise BadParameter("--video", str(path), f"a file named *{', *'.join(CODECS)}")
 
 
-def write_film(world: World, plan: Plan, seed: int, path: Path) -> Episode:
+def write_film(world: World, plan: Plan, seed: int, path: Path, fps: float = FPS) -> Episode:
     """Play one episode again and film it."""
-    with VideoWriter(path, film_size(world.view.camera), FPS) as video:
-        return run_episode(world, plan, seed, witness=Film(video.write, FPS))
+    with VideoWriter(path, film_size(world.view.camera), fps) as video:
+        return run_episode(world, plan, seed, witness=Film(video.write, fps))
 
 
 def stills_of(world: World, plan: Plan, seeds: Sequence[int]) -> dict[int, list[Still]]:

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from vision_robot.evaluate.statistics import wilson_interval
+from vision_robot.pick.causes import ending_of
 from vision_robot.pick.episode import RUNGS, Episode
 from vision_robot.pick.summary import Spread, summary_of
 from vision_robot_cli import pick_budget
@@ -25,6 +26,8 @@ def as_json(run: PickRun) -> dict[str, Any]:
         "episodes": found.episodes,
         "loop": run.plan.loop,
         "tracker": run.plan.tracker,
+        "scene": run.scene,
+        "things": [item.name for item in run.world.design.items],
         "faults": list(run.faults),
         **{f"{rung}_success": found.reached_rung[rung] / found.episodes for rung in ("reached", "gripped")},
         "grasp_success": found.reached_rung["lifted"] / found.episodes,
@@ -34,6 +37,10 @@ def as_json(run: PickRun) -> dict[str, Any]:
         "yaw_error_deg": _scaled(found.yaw_rad, 180 / np.pi),
         "place_error_mm": _scaled(found.placing_m, 1000),
         "seconds": _scaled(found.seconds, 1),
+        "pick_seconds": _scaled(found.pick_seconds, 1),
+        "tries": sum(one.tries for one in run.episodes),
+        "put_aside": sum(one.cleared for one in run.episodes),
+        "endings": found.endings,
         "looks": _scaled(found.looks, 1),
         "error_budget": None if run.budget is None else pick_budget.as_json(run.budget),
         "each": [_row(episode) for episode in run.episodes],
@@ -43,7 +50,9 @@ def as_json(run: PickRun) -> dict[str, Any]:
 def as_text(run: PickRun) -> str:
     """Rungs with intervals, errors, and what failed."""
     found = summary_of(run.episodes)
-    lines = [f"{found.episodes} episodes, {run.plan.loop} loop, tracker {run.plan.tracker}"]
+    lines = [
+        f"{found.episodes} episodes, scene {run.scene}, {run.plan.loop} loop, tracker {run.plan.tracker}"
+    ]
     if run.faults:
         lines[0] += f", with {', '.join(run.faults)}"
     for rung in RUNGS:
@@ -56,13 +65,19 @@ def as_text(run: PickRun) -> str:
         ("tool at closing", found.position_m, 1000, "mm"),
         ("turned by", found.yaw_rad, 180 / np.pi, "deg"),
         ("placed off by", found.placing_m, 1000, "mm"),
-        ("time", found.seconds, 1, "s"),
+        ("time to pick", found.pick_seconds, 1, "s"),
+        ("time in all", found.seconds, 1, "s"),
     ):
         if np.isfinite(spread.median):
             median, p95 = scale * spread.median, scale * spread.p95
             lines.append(f"  {name:<15} median {median:.2f} {unit}, 95 % within {p95:.2f} {unit}")
     if run.budget is not None:
         lines += pick_budget.as_text(run.budget)
+    ended = [f"{count} {ending}" for ending, count in found.endings.items() if count]
+    if ended:
+        lines.append(f"  not placed: {', '.join(ended)}")
+    if found.cleared:
+        lines.append(f"  {found.cleared} things in the way were put aside first")
     lines += [f"  seed {one.seed}: {one.failure}" for one in run.episodes if one.failure]
     return "\n".join(lines)
 
@@ -77,6 +92,10 @@ def _row(episode: Episode) -> dict[str, Any]:
         "place_error_mm": placing and 1000 * placing.position_m,
         "seen_error_mm": 1000 * episode.seen_error_m,
         "looks": episode.looks,
+        "tries": episode.tries,
+        "put_aside": episode.cleared,
+        "pick_seconds": episode.pick_seconds,
+        "ending": ending_of(episode),
         "failure": episode.failure,
     }
 

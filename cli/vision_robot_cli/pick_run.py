@@ -10,11 +10,10 @@ from vision_robot.evaluate.error_budget import ErrorBudget
 from vision_robot.pick.closed_loop import LAWS
 from vision_robot.pick.episode import Episode
 from vision_robot.pick.episodes import Plan, run_episode
-from vision_robot.pick.faults import FAULTS, with_fault, with_lens
-from vision_robot.pick.world import World, ordinary_world
+from vision_robot.pick.world import World
 from vision_robot_cli.output import progress
 from vision_robot_cli.pick_budget import budget_of, in_processes
-from vision_robot_cli.quantities import quantity
+from vision_robot_cli.pick_cell import CellWish, colour_names, world_of
 
 __all__ = ["PickRun", "pick_run"]
 
@@ -27,6 +26,7 @@ class PickRun:
 
     plan: Plan
     world: World
+    scene: str
     faults: Sequence[str]
     episodes: Sequence[Episode]
     budget: ErrorBudget | None
@@ -37,7 +37,8 @@ def pick_run(
     loop: str,
     tracker: str,
     options: Sequence[str],
-    faults: Sequence[str],
+    wish: CellWish,
+    tries: int,
     with_budget: bool,
     workers: int,
     seed: int,
@@ -47,19 +48,19 @@ def pick_run(
         raise BadParameter("--episodes", count, "a whole number from 1 on")
     if workers < 1:
         raise BadParameter("--workers", workers, "a whole number from 1 on")
+    world = world_of(wish, seed)
     given = _options(options)
     if tracker == "rgb" and not given:
-        given = {"color": "red"}  # what the cell's rod is
-    plan = Plan(tracker, given, next(iter(LAWS)) if loop == CLOSED else loop)
-    world = ordinary_world()
-    for one in faults:
-        world = _faulty(world, one)
+        given = {"color": colour_names(world.design.items)}  # what the cell's things are
+    plan = Plan(tracker, given, next(iter(LAWS)) if loop == CLOSED else loop, tries=tries)
+    if with_budget and world.design.belt is not None:
+        raise BadParameter("--budget", "on a belt", "left out: the budget is that of things that lie still")
     seeds = range(seed, seed + count)
     episodes = list(progress(_episodes(world, plan, seeds, workers), "picking", total=count))
     budget = None
     if with_budget:
         budget = budget_of(world, plan, seeds, workers)
-    return PickRun(plan, world, faults, episodes, budget)
+    return PickRun(plan, world, wish.scene, wish.faults, episodes, budget)
 
 
 def _episodes(world: World, plan: Plan, seeds: Sequence[int], workers: int) -> Iterable[Episode]:
@@ -74,12 +75,3 @@ def _options(words: Sequence[str]) -> Mapping[str, Any]:
             raise BadParameter("--set", word, "a name and a value, such as color=red")
         given[name.strip().rpartition(".")[2]] = value.strip()
     return given
-
-
-def _faulty(world: World, text: str) -> World:
-    name, _, value = text.partition("=")
-    name = name.strip()
-    if name == "lens":
-        return with_lens(world, value.strip())
-    unit = FAULTS[name].unit if name in FAULTS else ""
-    return with_fault(world, name, quantity(value, unit, f"--fault {name}"))

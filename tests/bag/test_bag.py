@@ -1,7 +1,11 @@
 """Proves that a topic of a bag is a video: pictures, times, the choice of the topic, and what damage says."""
 
+from contextlib import suppress
+
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from tests.bag.bags import KINDS, packed, raw, write_bag
 from vision_robot.bag import Bag, is_bag
@@ -99,6 +103,28 @@ def test_damage_is_one_error(bag, tmp_path):
             list(Bag(bag))
     with pytest.raises(BadBag, match="no such file"):
         Bag(tmp_path / "none.bag")
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory):
+    """The bytes of a bag with pictures of both kinds."""
+    topics = {"/a": [raw(PICTURES[0], "bgr8")] * 2, "/b": [packed(PICTURES[1])] * 2}
+    return write_bag(tmp_path_factory.mktemp("sound"), "ros1", topics).read_bytes()
+
+
+@given(st.data())
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_damage_anywhere_is_refused_or_read(sound, tmp_path, data):
+    """Never another error, whatever bytes are changed or missing."""
+    places = st.integers(0, len(sound) - 1)
+    damaged = bytearray(sound)
+    for place, value in data.draw(st.lists(st.tuples(places, st.integers(0, 255)), min_size=1, max_size=12)):
+        damaged[place] = value
+    path = tmp_path / "damaged.bag"
+    path.write_bytes(damaged[: data.draw(st.sampled_from([len(sound), data.draw(places)]))])
+    for topic in ("/a", "/b"):
+        with suppress(BadBag):
+            assert all(frame.image.dtype == np.uint8 for frame in Bag(path, topic))
 
 
 def test_bags_without_pictures_and_empty_topics(tmp_path):

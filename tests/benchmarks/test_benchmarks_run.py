@@ -21,10 +21,13 @@ QUICK = [
     "measure",
     "next_view",
     "refinement",
+    "servoing",
     "synth_speed",
+    "trackers",
     "triangulation",
     "truth_accuracy",
     "truth_speed",
+    "untilted",
 ]
 
 

@@ -9,14 +9,13 @@ import shutil
 from pathlib import Path
 
 import pytest
-import typer
-from typer.core import TyperGroup
 
 from tests.cli.json_schemas import faults
+from tests.cli.parsing import parse
 from tests.cli.workshop import furnish
 from vision_robot_cli.commands import every_command
 from vision_robot_cli.examples import examples_in, with_examples_whole
-from vision_robot_cli.main import app, load, run
+from vision_robot_cli.main import load, run
 
 EXAMPLES = [
     (words, example)
@@ -59,23 +58,12 @@ def test_every_command_has_an_example(words, command):
 
 @pytest.mark.parametrize("example", [example for _, example in EXAMPLES])
 def test_every_example_can_be_parsed(example):
-    parsed(shlex.split(example)[1:])
-
-
-def parsed(words: list[str]) -> None:
-    """Raise where the command line would refuse these words, without running anything."""
-    name, command, context = "vr", typer.main.get_command(app), None
-    while isinstance(command, TyperGroup):
-        context = command.make_context(name, [], parent=context, resilient_parsing=True)
-        name, words = words[0], words[1:]
-        command = command.get_command(context, name)
-        assert command, f"there is no command {name}"
-    command.make_context(name, words, parent=context)
+    parse(shlex.split(example)[1:])
 
 
 def test_what_is_no_option_is_not_parsed():
     with pytest.raises(Exception, match="--modle"):
-        parsed(["calibrate", "--modle", "pinhole"])
+        parse(["calibrate", "--modle", "pinhole"])
 
 
 @pytest.mark.parametrize("example", QUICK)

@@ -62,7 +62,7 @@ class PictureMessages:
         data = np.asarray(message.data, dtype=np.uint8)
         try:
             image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if len(data) else None
-        except cv2.error:
+        except (cv2.error, MemoryError):
             image = None
         if image is None or image.dtype not in (np.uint8, np.uint16):
             raise BadFrame(index, f"its data, said to be {message.format!r}, cannot be decoded")

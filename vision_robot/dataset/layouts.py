@@ -39,16 +39,16 @@ def open_dataset(path: Path | str, layout: str | None = None) -> Dataset:
     raise BadDataset(path, f"none of these is in it: {marks}")
 
 
+def recognised(folder: Path) -> str | None:
+    """The layout a folder has, by the file that marks it."""
+    return next((name for name in LAYOUTS if _layout(name).recognises(folder)), None)
+
+
 def _read(name: str, folder: Path) -> Dataset:
     try:
         return _layout(name).read(folder)
     except OSError as error:  # such as names in its tables that are too long to be names
         raise BadDataset(folder, error.strerror or str(error)) from error
-
-
-def recognised(folder: Path) -> str | None:
-    """The layout a folder has, by the file that marks it."""
-    return next((name for name in LAYOUTS if _layout(name).recognises(folder)), None)
 
 
 def _layout(name: str) -> Layout:

@@ -5,7 +5,17 @@ Every message says what is wrong, where, and how to mend it; the evidence is kep
 as attributes so that a caller can act on it without parsing text.
 """
 
-from .arms import BadArm, BadGoal, BadPath, MissingLimits, UnknownStructure, Unreachable
+from .arms import (
+    BadArm,
+    BadGoal,
+    BadPath,
+    GripperTooNarrow,
+    InTheWay,
+    MissingLimits,
+    TooLate,
+    UnknownStructure,
+    Unreachable,
+)
 from .links import (
     BadPort,
     CommandRefused,
@@ -78,6 +88,8 @@ __all__ = [
     "DegeneratePoses",
     "DegenerateViews",
     "EdgeOnPlane",
+    "GripperTooNarrow",
+    "InTheWay",
     "LinkMismatch",
     "LostSight",
     "MissingLimits",
@@ -95,6 +107,7 @@ __all__ = [
     "ServoAstray",
     "TooFewPoses",
     "TooFewViews",
+    "TooLate",
     "TooLittleMotion",
     "UnknownStructure",
     "UnlevelBoard",

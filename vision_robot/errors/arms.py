@@ -58,3 +58,34 @@ class UnknownStructure(BadInput):
             f"no closed form is known for joints {', '.join(joints)} ({pattern}): "
             f"{why or 'no kind that is known has this order of joints'}; use the numeric solver"
         )
+
+
+class GripperTooNarrow(VisionRobotError):
+    """Fingers do not go around a thing."""
+
+    def __init__(self, thing: str, width_m: float, most_m: float, clearance_m: float):
+        self.thing, self.width_m, self.most_m = thing, width_m, most_m
+        super().__init__(
+            f"the gripper is too narrow for {thing}: its narrowest side has {1000 * width_m:.0f} mm, the "
+            f"fingers open to {1000 * most_m:.0f} mm and need {1000 * clearance_m:.0f} mm on each side"
+        )
+
+
+class InTheWay(VisionRobotError):
+    """No grasp of a thing keeps clear of what lies beside it."""
+
+    def __init__(self, thing: str, position_m: Sequence[float], room_m: float, which: int = 0):
+        self.thing, self.position_m, self.room_m, self.which = thing, tuple(position_m), room_m, which
+        where = ", ".join(f"{1000 * x:.0f}" for x in self.position_m[:2])
+        super().__init__(f"{thing} cannot be taken: what lies at ({where}) mm of the station is in the way")
+
+
+class TooLate(VisionRobotError):
+    """A moving thing leaves the arm's reach before the arm is there."""
+
+    def __init__(self, thing: str, speed_m_s: float, needed_s: float):
+        self.thing, self.speed_m_s, self.needed_s = thing, speed_m_s, needed_s
+        super().__init__(
+            f"{thing} moves at {1000 * speed_m_s:.0f} mm/s and is out of reach again before the arm meets "
+            f"it, which takes {needed_s:.1f} s"
+        )

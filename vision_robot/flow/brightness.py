@@ -27,15 +27,16 @@ def exposure_between(first: Float[Array, "h w"], second: Float[Array, "h w"]) ->
 
     Regression through the means, moving objects left out by weights (Cauchy's) that fall with the residual.
     """
-    step = max(1, int(np.sqrt(first.size / SAMPLES)))
+    step = max(1, int(np.ceil(np.sqrt(first.size / SAMPLES))))
     a, b = (picture[::step, ::step].astype(float).ravel() for picture in (first, second))
     weight = np.ones_like(a)
     gain, offset = 1.0, 0.0
     for _ in range(4):
         total = weight.sum()
-        mean_a, mean_b = float(weight @ a) / total, float(weight @ b) / total
-        spread = float(weight @ (b - mean_b) ** 2)
-        gain = float(weight @ ((a - mean_a) * (b - mean_b))) / spread if spread > 0 else 1.0
+        # Sums and no dot products, for which libraries start threads that wait for each other.
+        mean_a, mean_b = float((weight * a).sum()) / total, float((weight * b).sum()) / total
+        spread = float((weight * (b - mean_b) ** 2).sum())
+        gain = float((weight * (a - mean_a) * (b - mean_b)).sum()) / spread if spread > 0 else 1.0
         gain = float(np.clip(gain, 0.5, 2))
         offset = mean_a - gain * mean_b
         off = a - gain * b - offset

@@ -1,7 +1,7 @@
 """Closed loop (O2): the label on the hand and the thing are seen together, and their error is fed back."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -50,8 +50,8 @@ class ClosedLoop:
     def __call__(self, player: Player, first: Sighting, above: Float[Array, "n"]) -> tuple[Sighting, int]:
         """Servo above the thing; what comes back is the place to command so that the tool is really there.
 
-        The hand is held that way round which shows its label best, and turned by half a turn if it is hidden
-        all the same. Raises LostSight where it is hidden either way.
+        Hand and elbow are held in that way which shows the label best, and in the others if it is hidden all
+        the same. Raises LostSight where it is hidden in all.
         """
         del above  # a loop finds its own way there
         player.phase = self.law
@@ -65,7 +65,7 @@ class ClosedLoop:
         raise lost
 
     def _ways(self, player: Player, first: Sighting) -> list[Hand]:
-        """The hand both ways round, that with more room for the lines of sight first."""
+        """All ways to hold hand and elbow, those with more room for the lines of sight first."""
         hand = Hand(
             player,
             self.eye,
@@ -77,7 +77,7 @@ class ClosedLoop:
             looks=self.looks,
             chance=np.random.default_rng([self.seed, 3]),
         )
-        ways = [hand, replace(hand, turned=True)]
+        ways = hand.ways(first, self.how.heights_m[-1])
         return sorted(ways, key=lambda way: -min(_room_m(way, first, h) for h in self.how.heights_m))
 
 

@@ -22,7 +22,7 @@ class Miss:
     along_m: float
     height_m: float
     yaw_rad: float
-    """Of the axes, headless: from -pi/2 to pi/2."""
+    """Of the axes, headless: from -pi/2 to pi/2; NaN for what has no direction."""
 
     @property
     def position_m(self) -> float:
@@ -57,7 +57,7 @@ class Episode:
     thing: str = ""
     """Name of what was to be picked."""
     closing: Miss | None = None
-    """Of the tool against the thing when the fingers began to close."""
+    """Of the tool against the grasp that was chosen, when the fingers began to close."""
     seen_error_m: float = np.nan
     """Of where the camera said the thing lies."""
     seen_yaw_error_rad: float = np.nan
@@ -69,11 +69,19 @@ class Episode:
     """Of the thing against its goal, when all is at rest."""
     seconds: float = np.nan
     """Simulated, from the first move to the last."""
+    pick_seconds: float = np.nan
+    """Simulated, from the first move until it was lifted and held."""
+    tries: int = 1
+    """How often it was gone for."""
+    cleared: int = 0
+    """How many things in the way were put aside first."""
     looks: int = 0
     course: tuple[Look, ...] = ()
     """How a closed loop converged."""
     failure: str | None = None
-    """Why it ended early."""
+    """Why it ended early, in a sentence."""
+    cause: str = ""
+    """The same in a word or two, to be counted: one of the causes in `pick.causes`."""
 
     @property
     def seen(self) -> bool:
@@ -91,10 +99,16 @@ def axis_angle(rotation: Float[Array, "3 3"], column: int) -> float:
     return float(np.arctan2(rotation[1, column], rotation[0, column]))
 
 
-def miss_of(station_from_thing: SE3, position_m: Float[Array, "3"], yaw_rad: float) -> Miss:
-    """How far something at `position_m`, its axis along `yaw_rad`, lies off a thing whose axis is its x."""
+def miss_of(
+    station_from_thing: SE3, position_m: Float[Array, "3"], yaw_rad: float, symmetry_rad: float = np.pi
+) -> Miss:
+    """How far something at `position_m`, its axis along `yaw_rad`, lies off a thing whose axis is its x.
+
+    Turned by `symmetry_rad` the thing is the same; with 0 it has no direction at all.
+    """
     own = axis_angle(station_from_thing.rotation, 0)
     off = position_m - station_from_thing.translation
     c, s = np.cos(own), np.sin(own)
-    turn = (yaw_rad - own + np.pi / 2) % np.pi - np.pi / 2
+    half = symmetry_rad / 2
+    turn = (yaw_rad - own + half) % symmetry_rad - half if symmetry_rad > 0 else np.nan
     return Miss(float(-s * off[0] + c * off[1]), float(c * off[0] + s * off[1]), float(off[2]), float(turn))

@@ -20,6 +20,8 @@ class Fault:
     unit: str
     meaning: str
     apply: Callable[[World, float], World]
+    least: float = -np.inf
+    most: float = np.inf
 
 
 def _camera_rotation(world: World, size: float) -> World:
@@ -53,24 +55,29 @@ FAULTS: dict[str, Fault] = {
         "",
         "the board's squares are larger than what was typed by this share",
         lambda world, size: replace(world, square_scale=1 + size),
+        least=-0.5,
+        most=1.0,
     ),
     "joint-offset": Fault("rad", "encoders are off, from joint to joint to the other side", _joint_offset),
-    "backlash": Fault("rad", "play in every turning joint", _backlash),
+    "backlash": Fault("rad", "play in every turning joint", _backlash, least=0),
     "corner-noise": Fault(
         "px",
         "noise of the corners that the cell is calibrated with",
         lambda world, size: replace(world, corner_noise_px=size),
+        least=1e-3,
     ),
     "image-noise": Fault(
-        "levels", "noise of the pictures", lambda world, size: replace(world, image_noise=size)
+        "levels", "noise of the pictures", lambda world, size: replace(world, image_noise=size), least=0
     ),
     "latency": Fault(
-        "s", "time from a picture to its answer", lambda world, size: replace(world, latency_s=size)
+        "s", "time from a picture to its answer", lambda world, size: replace(world, latency_s=size), least=0
     ),
     "lost-sight": Fault(
         "",
         "share of pictures in which the hand's label is not seen",
         lambda world, size: replace(world, lost_sight=size),
+        least=0,
+        most=1,
     ),
 }
 """Name -> fault."""
@@ -80,9 +87,12 @@ def with_fault(world: World, name: str, size: float) -> World:
     """The world with that fault. Raises BadParameter for an unknown name, listing the known."""
     if name not in FAULTS:
         raise BadParameter("fault", name, f"one of {', '.join(FAULTS)}, lens")
-    if not np.isfinite(size):
-        raise BadParameter(f"size of fault {name}", size, "a number")
-    return FAULTS[name].apply(world, size)
+    fault = FAULTS[name]
+    if not (np.isfinite(size) and fault.least <= size <= fault.most):
+        unit = f" {fault.unit}" if fault.unit else ""
+        allowed = f"a number from {fault.least:g} to {fault.most:g}{unit}"
+        raise BadParameter(f"size of fault {name}", size, allowed)
+    return fault.apply(world, size)
 
 
 def with_lens(world: World, lens: str) -> World:

@@ -67,7 +67,10 @@ class Still:
     phase: str
     """What had just been done."""
     time_s: float
+    said: tuple[str, ...]
+    """The true errors of that moment."""
     image: Image
+    """The fixed camera's picture, marked."""
 
 
 class Film:
@@ -114,33 +117,34 @@ class Stills:
         self, cell: Cell, eye: Eye, player: Player, believed: Knowledge, where: Sighting, episode: Episode
     ) -> None:
         """The first picture is what was seen."""
-        self._scene = scene = _Scene(cell, eye, player, believed, where, episode)
-        self._keep(_picture(scene, "seen"))
+        self._scene = _Scene(cell, eye, player, believed, where, episode)
+        self._keep()
         cell.watch(0.02, self._look)
 
     def unseen(self, cell: Cell, eye: Eye) -> None:
         """The empty look."""
-        picture = beside(eye.plain(), eye.through(SIDE), "nothing seen", [], cell.time_s)
-        self.pictures.append(Still("nothing seen", cell.time_s, picture))
+        self.pictures.append(Still("nothing seen", cell.time_s, (), eye.plain().copy()))
 
     def ends(self, episode: Episode) -> None:
         """The outcome."""
         if self._scene is not None:
             self._scene.cell.watch(1.0, None)
             self._phase = _outcome(episode)
-            self._keep(_picture(self._scene, self._phase))
+            self._keep()
 
     def _look(self) -> None:
         assert self._scene is not None, "watched from the beginning on"
         now = self._scene.player.phase
         if now != self._phase:
             if self._phase != "seen":
-                self._keep(_picture(self._scene, self._phase))
+                self._keep()
             self._phase = now
 
-    def _keep(self, image: Image) -> None:
-        assert self._scene is not None, "watched from the beginning on"
-        self.pictures.append(Still(self._phase, self._scene.cell.time_s, image))
+    def _keep(self) -> None:
+        scene, phase = self._scene, self._phase
+        assert scene is not None, "watched from the beginning on"
+        said = tuple(_errors(scene, phase))
+        self.pictures.append(Still(phase, scene.cell.time_s, said, _marked(scene, phase)))
 
 
 def film_size(camera: Camera) -> tuple[int, int]:
@@ -149,7 +153,14 @@ def film_size(camera: Camera) -> tuple[int, int]:
 
 
 def _picture(scene: _Scene, phase: str) -> Image:
-    cell, believed, where = scene.cell, scene.believed, scene.where
+    """One picture of the film."""
+    cell, side = scene.cell, scene.eye.through(SIDE)
+    return beside(_marked(scene, phase), side, phase, _errors(scene, phase), cell.time_s)
+
+
+def _marked(scene: _Scene, phase: str) -> Image:
+    """The fixed camera's picture, with what is believed drawn in."""
+    believed, where = scene.believed, scene.where
     image, plane = scene.eye.plain().copy(), believed.plane
 
     def at(places_m: Float[Array, "n 2"], z_m: float) -> Float[Array, "n 2"]:
@@ -159,7 +170,7 @@ def _picture(scene: _Scene, phase: str) -> Image:
     goal = scene.episode.station_from_place
     yaw = axis_angle(goal.rotation, 0)
     outline(image, at(_rectangle(goal.translation[:2], yaw, size[0], size[-1]), 0.0), GOAL)
-    if not _moved(scene, phase):
+    if not _moved(phase):
         outline(
             image, at(_rectangle(where.position_m, where.yaw_rad, size[0], size[-1]), where.height_m), SEEN
         )
@@ -169,12 +180,12 @@ def _picture(scene: _Scene, phase: str) -> Image:
     if scene.label is not None:
         corners = scene.label.corners_in_station(believed, scene.told)
         outline(image, plane.camera.project(plane.cam_from_station.apply(corners)), TOOL)
-    return beside(image, scene.eye.through(SIDE), phase, _errors(scene, phase), cell.time_s)
+    return image
 
 
-def _moved(scene: _Scene, phase: str) -> bool:
+def _moved(phase: str) -> bool:
     """Whether the thing is taken off its place, at least in the arm's mind."""
-    return phase in CARRYING or scene.player.phase in CARRYING
+    return phase in CARRYING or phase.startswith(("lifted", "placed"))
 
 
 def _errors(scene: _Scene, phase: str) -> list[str]:
@@ -182,7 +193,7 @@ def _errors(scene: _Scene, phase: str) -> list[str]:
     cell = scene.cell
     thing, tool = cell.station_from(scene.episode.thing), cell.station_from_tool
     goal = scene.episode.station_from_place
-    if _moved(scene, phase):
+    if _moved(phase):
         miss = miss_of(goal, thing.translation, axis_angle(thing.rotation, 0))
         return [f"thing {_mm(miss.position_m)} from goal", f"turned {np.degrees(miss.yaw_rad):+.1f} deg"]
     miss = miss_of(thing, tool.translation, axis_angle(tool.rotation, 1))

@@ -17,7 +17,7 @@ from vision_robot.track.blobs import Blobs
 from vision_robot.track.tracker import Tracker
 from vision_robot.types import Array, Float, Image
 
-__all__ = ["Arrival", "Eye", "Survey", "look", "recognised", "survey"]
+__all__ = ["Arrival", "LIES", "Eye", "Survey", "look", "recognised", "survey"]
 
 AWAY = SE3(np.eye(3), np.array([0.0, 0.0, 5.0]))
 """Where objects wait before they arrive: behind the camera."""
@@ -45,11 +45,15 @@ class Survey:
     others: tuple[Seen, ...] = ()
 
 
+LIES = Arrival(empty=0, sliding=0)
+"""What lies there already, looked at once more."""
+
 ARRIVALS = {
     "rgb": Arrival(empty=0, sliding=0),
     "rgb-plain": Arrival(empty=0, sliding=0),
     "background": Arrival(sliding=0),
     "background-plain": Arrival(sliding=0),
+    "optical-flow-plain": Arrival(empty=0, sliding=12, still=0, distance_m=0.03),
 }
 """What of it a kind of tracker needs to see; others see all of it."""
 
@@ -60,10 +64,13 @@ class Eye:
     def __init__(self, cell: Cell, world: World, seed: int):
         self._renderer = TruthRenderer(cell, world.view_now)
         self._noise, self._rng = world.image_noise, np.random.default_rng([seed, 2])
+        self.frames = 0
+        """Pictures taken so far."""
         self._state, self._clean = b"", np.zeros((0, 0, 3), dtype=np.uint8)
 
     def picture(self) -> Image:
         """What the controller gets to see."""
+        self.frames += 1
         return self._spoilt(self.plain())
 
     def plain(self) -> Image:
@@ -139,8 +146,8 @@ def survey(
     colour comes first), by how sure and how large it is and, with a `plane`, by whether it has its size.
     """
     blobs = Blobs.empty()
-    for k, image in enumerate(_arriving(cell, eye, name, arrival or ARRIVALS.get(tracker.name, Arrival()))):
-        blobs = tracker.step(image, k / world.frame_rate)
+    for image in _arriving(cell, eye, name, arrival or ARRIVALS.get(tracker.name, Arrival())):
+        blobs = tracker.step(image, eye.frames / world.frame_rate)
     item = next(one for one in world.design.items if one.name == name)
     return recognised(blobs, tracker.name, item, plane)
 
@@ -155,6 +162,8 @@ def recognised(blobs: Blobs, tracker: str, item: Item, plane: WorkPlane | None) 
     if plane is not None and len(mine) > 1:
         worth = blobs.score * np.array([_alike(blobs, k, hull, plane) for k in range(len(blobs))])
     best = int(mine[np.argmax(worth[mine])])
+    if plane is not None and _is_cut(blobs.box_px[best], plane):
+        raise NothingSeen(tracker, f"{item.name} whole: the picture's border cuts it")
     seen = [
         Seen(
             blobs.centroid_px[k],
@@ -166,6 +175,13 @@ def recognised(blobs: Blobs, tracker: str, item: Item, plane: WorkPlane | None) 
     ]
     others = tuple(one for k, one in enumerate(seen) if k != best)
     return Survey(replace(seen[best], hull=hull), others)
+
+
+def _is_cut(box_px: Float[Array, "4"], plane: WorkPlane) -> bool:
+    """Whether a blob touches the picture's border."""
+    left, top, width, height = box_px.tolist()
+    size = plane.camera
+    return left < 0.5 or top < 0.5 or left + width > size.width - 1.5 or top + height > size.height - 1.5
 
 
 def _alike(blobs: Blobs, index: int, hull: Float[Array, "n 3"], plane: WorkPlane) -> float:

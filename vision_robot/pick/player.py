@@ -61,6 +61,21 @@ class Player:
         self._told = joints
         self.cell.advance(seconds, joints=pair[1])
 
+    def track(
+        self,
+        times_s: Float[Array, "m"],
+        joints: Float[Array, "m n"],
+        openings_m: Float[Array, "m"] | None = None,
+    ) -> None:
+        """Lead the servos through rows of joint values at times from now, and the fingers with them."""
+        rows = np.concatenate([self._told[None], joints])
+        self.cell.follow(times_s, self._with_play(self.world.real_joints(rows))[1:], openings_m)
+        self._told = joints[-1]
+
+    def seconds_to(self, joints: Float[Array, "n"]) -> float:
+        """How long `move_to` would take."""
+        return self._timed(np.stack([self._told, joints]), 1.0).seconds + SETTLE_S
+
     def grip(self, opening_m: float, *, seconds: float = 0.5) -> None:
         """Move the fingers to that gap, or until something is between them."""
         self.cell.advance(seconds, opening_m=opening_m)

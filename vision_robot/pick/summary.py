@@ -1,10 +1,12 @@
 """Many episodes in a few numbers, each with its interval."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from vision_robot.pick.causes import ending_of
 from vision_robot.pick.episode import RUNGS, Episode
 
 __all__ = ["Spread", "Summary", "summary_of"]
@@ -38,6 +40,11 @@ class Summary:
     placing_m: Spread
     placing_yaw_rad: Spread
     seconds: Spread
+    pick_seconds: Spread
+    cleared: int
+    """Things in the way that were put aside."""
+    endings: dict[str, int]
+    """How many ended short of success, by why."""
     looks: Spread
 
 
@@ -53,5 +60,8 @@ def summary_of(episodes: Sequence[Episode]) -> Summary:
         placing_m=Spread.of([miss.position_m for miss in placing]),
         placing_yaw_rad=Spread.of([abs(miss.yaw_rad) for miss in placing]),
         seconds=Spread.of([one.seconds for one in episodes]),
+        pick_seconds=Spread.of([one.pick_seconds for one in episodes]),
+        cleared=sum(one.cleared for one in episodes),
+        endings=dict(Counter(ending for one in episodes if (ending := ending_of(one)))),
         looks=Spread.of([float(one.looks) for one in episodes if one.looks]),
     )

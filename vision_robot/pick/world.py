@@ -49,7 +49,9 @@ class World:
     """Noise of the pictures [levels]."""
     frame_rate: float = 30.0
     latency_s: float = 0.0
-    """From a picture's moment to its blobs, for closed loops."""
+    """From a picture's moment to its blobs: for closed loops, and for what moves."""
+    place: tuple[float, float, float] = (0.02, -0.17, np.pi / 2)
+    """Where things are put: x, y [m] and yaw [rad] in {S}."""
     lost_sight: float = 0.0
     """Share of pictures in which the hand's label is not seen, for closed loops."""
 

@@ -103,7 +103,7 @@ def _facts(story: DemoStory) -> Facts:
         (
             ("camera off by", f"{compact(error.rms_px, 2)} px", "rms over the whole picture"),
             ("best tracker", best[0], f"{compact(best[1].figures['centroid_error_px'], 2)} px off, median"),
-            ("inverse kinematics", f"{fastest:,.0f} / s", "solutions of one core"),
+            ("inverse kinematics", f"{compact(fastest / 1e3, 2)} thousand / s", "solutions of one core"),
             (
                 "grasped and held",
                 f"{found.reached_rung['lifted']} of {found.episodes}",

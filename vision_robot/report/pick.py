@@ -25,6 +25,9 @@ __all__ = ["PickStory", "error_parts", "failure_parts", "pick_page", "picks_piec
 TELLING = ("seen", "close", "put down")
 """Phases at whose ends a failure can be seen, besides the last picture."""
 
+SHORT = ("seen", "down", "lift")
+"""Phases that a longer story shows of an episode, besides the loop's own and the last picture."""
+
 LOW_SHARE = 0.9
 """Grasp success under which a page warns."""
 
@@ -199,7 +202,8 @@ def picks_piece(stories: Mapping[str, PickStory]) -> tuple[Part, ...]:
     parts: list[Part] = [conditions({name: story.episodes for name, story in stories.items()})]
     for name, story in stories.items():
         for seed, stills in story.stills.items():
-            parts.append(film_strip(stills, f"{name}, seed {seed}"))
+            told = [still for still in stills[:-1] if still.phase in (*SHORT, story.plan.loop)]
+            parts.append(film_strip([*told, stills[-1]], f"{name}, seed {seed}"))
     offsets = {name: closing_offsets_m(story.episodes) for name, story in stories.items()}
     if any(len(rows) for rows in offsets.values()):
         parts.append(Figures((plan_view(offsets),)))

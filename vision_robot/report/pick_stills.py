@@ -10,16 +10,15 @@ __all__ = ["film_strip"]
 
 
 def film_strip(stills: Sequence[Still], name: str) -> Gallery:
-    """One picture of each phase that has a name, in the order of time."""
+    """A picture of each of the `stills`, and what was true at that moment."""
     return Gallery(
         tuple(
             Picture(
                 data_uri=photograph(still.image),
                 alt=f"{name}, {still.phase}",
-                caption=f"{name}: {still.phase}, {still.time_s:.1f} s",
+                caption=f"{name}, {still.time_s:.1f} s: {'; '.join((still.phase, *still.said))}",
             )
             for still in stills
-            if still.phase
         ),
         wide=True,
     )

@@ -2,17 +2,22 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vision_robot.pick.film_drawing import cross
 from vision_robot.report.figure import draw, view_colours
 from vision_robot.report.page import Figure, Figures, Gallery, Paragraph, Part, Picture, Table
 from vision_robot.report.photograph import photograph
 from vision_robot.report.quantity import compact
 from vision_robot.tracks import Tracks
-from vision_robot.types import Image
+from vision_robot.types import Array, Float, Image
 
-__all__ = ["Answer", "trackers_piece"]
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Canvas
+
+__all__ = ["Answer", "marked", "trackers_piece"]
 
 COLUMNS = (
     ("centroid_error_px", "centroid [px]"),
@@ -62,10 +67,20 @@ def trackers_piece(
     )
 
 
+def marked(image: Image, frame: int, answers: Mapping[str, Answer]) -> Image:
+    """A frame with a cross where each tracker sees something, in the colours of the drawing of errors."""
+    drawn = image.copy()
+    for answer, colour in zip(answers.values(), view_colours(len(answers)), strict=True):
+        red, green, blue = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
+        for pixel in answer.tracks.centroid_px[answer.tracks.frame == frame]:
+            cross(drawn, pixel, (blue, green, red))
+    return drawn
+
+
 def _errors_over_time(answers: Mapping[str, Answer], truth: Tracks) -> Figure:
     curves = {name: _nearest(answer.tracks, truth) for name, answer in answers.items()}
 
-    def paint(canvas) -> None:
+    def paint(canvas: "Canvas") -> None:
         axes = canvas.add_subplot()
         for (name, (times, errors)), colour in zip(curves.items(), view_colours(len(curves)), strict=True):
             axes.plot(times, np.maximum(errors, 1e-2), color=colour, label=name)
@@ -83,7 +98,7 @@ def _errors_over_time(answers: Mapping[str, Answer], truth: Tracks) -> Figure:
     )
 
 
-def _nearest(answer: Tracks, truth: Tracks) -> tuple[np.ndarray, np.ndarray]:
+def _nearest(answer: Tracks, truth: Tracks) -> tuple[Float[Array, "frames"], Float[Array, "frames"]]:
     times, errors = [], []
     for frame in np.unique(truth.frame):
         there, said = truth.centroid_px[truth.frame == frame], answer.centroid_px[answer.frame == frame]

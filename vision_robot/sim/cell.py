@@ -11,6 +11,7 @@ from vision_robot.sim.cell_design import CellDesign, Item
 from vision_robot.sim.cell_model import build
 from vision_robot.sim.cell_names import ARM, BELT, ITEM, LABEL, LABEL_THICKNESS_M
 from vision_robot.sim.drive import Drive
+from vision_robot.sim.fingers import Fingers, fingers_of
 from vision_robot.sim.gl import load_mujoco
 from vision_robot.sim.placing import quaternion, resting
 from vision_robot.sim.scatter import scattered
@@ -214,6 +215,11 @@ class Cell:
     def opening_limits_m(self) -> tuple[float, float]:
         """Least and greatest gap that can be commanded."""
         return self._arm().opening_limits_m(self.model)
+
+    @property
+    def fingers(self) -> Fingers | None:
+        """The gripper's fingers as they stand; None where there are none."""
+        return fingers_of(self.model, self.data, ARM, self._arm().joint_ids)
 
     @property
     def base_from_tool(self) -> SE3:

@@ -108,6 +108,12 @@ class ArmMount:
     """Size of the label."""
     start: tuple[float, ...] | None = None
     """Joint values [m, rad] at the start; None: a pose out of the way."""
+    tool: str = "tool"
+    """Site between the fingers."""
+    tool_turn_rad: float = 0.0
+    """Turn about that site's z to {T}, whose x is the direction in which the fingers close."""
+    balanced: bool = False
+    """Whether drives that hold the arm against its weight are added to the file's own."""
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from typing import Any, Self, TypeAlias
 import numpy as np
 
 from vision_robot.errors import BadParameter
+from vision_robot.sim.jaws import Jaws
 from vision_robot.types import Array, Float
 
 __all__ = ["Drive"]
@@ -22,15 +23,19 @@ class Drive:
         self.joint_names = tuple(model.joint(i).name.removeprefix(prefix) for i in self.joint_ids)
         self._qpos = np.array([model.jnt_qposadr[i] for i in self.joint_ids])
         self._qvel = np.array([model.jnt_dofadr[i] for i in self.joint_ids])
-        servos = {
-            int(model.actuator_trnid[k, 0]): k
+        moved = {
+            k: int(model.actuator_trnid[k, 0])
             for k in range(model.nu)
             if model.actuator_trntype[k] == mj.mjtTrn.mjTRN_JOINT.value
         }
+        # A servo's force falls with the length; a motor's does not, and holds nothing.
+        servos = {joint: k for k, joint in moved.items() if model.actuator_biasprm[k, 1] < 0}
         self._servos = np.array([servos.get(i, -1) for i in self.joint_ids])
-        others = sorted(set(range(model.nu)) - set(self._servos.tolist()))
-        self._gripper = others[0] if others else None
-        self._gap_at_zero = _number(mj, model, prefix + "gap_at_zero")
+        others = [k for k in range(model.nu) if moved.get(k) not in self.joint_ids]
+        self._gripper = others[0] if others and model.actuator_biasprm[others[0], 1] < 0 else None
+        self._jaws = (
+            None if self._gripper is None else Jaws.of(mj, model, prefix, self.joint_ids, self._gripper)
+        )
         limits = np.where(model.jnt_limited[self.joint_ids, None], model.jnt_range[self.joint_ids], np.inf)
         self.limits = np.where(np.isinf(limits), [-np.inf, np.inf], limits)
 
@@ -52,7 +57,7 @@ class Drive:
         """Gap between the fingers."""
         if self._gripper is None:
             return float("nan")
-        return float(data.actuator_length[self._gripper]) + self._gap_at_zero
+        return self._grip().gap_m(float(data.actuator_length[self._gripper]))
 
     def grip_n(self, data: MjData) -> float:
         """Force of the gripper's actuator; negative closes."""
@@ -62,8 +67,8 @@ class Drive:
         """Least and greatest gap that can be commanded."""
         if self._gripper is None:
             return float("nan"), float("nan")
-        low, high = (model.actuator_ctrlrange[self._gripper] + self._gap_at_zero).tolist()
-        return low, high
+        del model
+        return self._grip().limits_m
 
     def command(self, data: MjData, joints: Float[Array, "n"] | None, opening_m: float | None) -> None:
         """Set what the servos shall hold from now on; None leaves it as it was."""
@@ -75,7 +80,7 @@ class Drive:
         if opening_m is not None:
             if self._gripper is None:
                 raise BadParameter("opening of the gripper", opening_m, "left out: this arm has no gripper")
-            data.ctrl[self._gripper] = opening_m - self._gap_at_zero
+            data.ctrl[self._gripper] = self._grip().command(opening_m)
 
     def put(self, data: MjData, joints: Float[Array, "n"], rates: Float[Array, "n"] | None = None) -> None:
         """Put the joints there at once, at rest or at `rates`, and have the servos hold them."""
@@ -88,11 +93,7 @@ class Drive:
         """Put the fingers there at once, each having its share of the gap, and have them held."""
         self.command(data, None, opening_m)
         assert self._gripper is not None
-        moment = self._finger_moments(model)
-        wanted = opening_m - self._gap_at_zero
-        for joint, share in moment.items():
-            data.qpos[model.jnt_qposadr[joint]] = wanted * share
-            data.qvel[model.jnt_dofadr[joint]] = 0
+        self._grip().put(model, data, opening_m)
 
     def checked(self, joints: Float[Array, "n"]) -> Float[Array, "n"]:
         """The joint values, if they are as many as there are joints and are numbers."""
@@ -105,17 +106,10 @@ class Drive:
             )
         return values
 
-    def _finger_moments(self, model: MjModel) -> dict[int, float]:
-        """Finger joints and the share of the gripper's length that each takes."""
-        k, kind = self._gripper, int(model.actuator_trntype[self._gripper])
-        target = int(model.actuator_trnid[k, 0])
-        if kind == 0:  # a joint
-            return {target: 1.0}
-        first, count = int(model.tendon_adr[target]), int(model.tendon_num[target])
-        wraps = range(first, first + count)
-        joints = [int(model.wrap_objid[i]) for i in wraps]
-        weights = np.array([float(model.wrap_prm[i]) for i in wraps])
-        return dict(zip(joints, (weights / (weights @ weights)).tolist(), strict=True))
+    def _grip(self) -> Jaws:
+        if self._jaws is None:
+            raise BadParameter("gripper", "none", "an arm whose fingers have a position actuator")
+        return self._jaws
 
 
 def _chain(mj: Any, model: MjModel, body: int) -> list[int]:
@@ -127,8 +121,3 @@ def _chain(mj: Any, model: MjModel, body: int) -> list[int]:
         body = int(model.body_parentid[body])
     moving = (mj.mjtJoint.mjJNT_SLIDE.value, mj.mjtJoint.mjJNT_HINGE.value)
     return [i for i in joints if model.jnt_type[i] in moving]
-
-
-def _number(mj: Any, model: MjModel, name: str) -> float:
-    found = mj.mj_name2id(model, mj.mjtObj.mjOBJ_NUMERIC.value, name)
-    return float(model.numeric_data[model.numeric_adr[found]]) if found >= 0 else 0.0

@@ -80,12 +80,31 @@ def add_arm(mj: Any, spec: MjSpec, mount: ArmMount) -> None:
         arm = mj.MjSpec.from_file(str(path))
     except (OSError, ValueError) as error:
         raise BadParameter("arm", str(path), f"an MJCF file that MuJoCo can read ({error})") from error
-    tool = arm.site("tool")
+    tool = arm.site(mount.tool)
     if tool is None:
-        raise BadParameter("arm", str(path), 'an MJCF file with a site "tool" between the fingers')
+        raise BadParameter("arm", str(path), f'an MJCF file with a site "{mount.tool}" between the fingers')
+    if mount.tool != "tool" or mount.tool_turn_rad:
+        tool = _add_tool(mj, arm, tool, mount.tool_turn_rad)
+    if mount.balanced:
+        for body in arm.bodies:
+            body.gravcomp = 1
     if mount.label is not None:
         _add_label(mj, arm, tool.parent, mount, mount.label)
     spec.attach(arm, frame=spec.worldbody.add_frame(), prefix=ARM)
+
+
+def _add_tool(mj: Any, arm: MjSpec, site: Any, turn_rad: float) -> Any:
+    """A site "tool" at another site's place, turned about its z; one of that name gives it up."""
+    if site.alt.type != mj.mjtOrientation.mjORIENTATION_QUAT:
+        raise BadParameter("tool", site.name, "a site whose orientation is a quat")
+    turned = np.zeros(4)
+    half = turn_rad / 2
+    mj.mju_mulQuat(turned, np.asarray(site.quat), np.array([np.cos(half), 0.0, 0.0, np.sin(half)]))
+    body, position = site.parent, np.array(site.pos)
+    named = arm.site("tool")
+    if named is not None:
+        named.name = "tool of the file"
+    return body.add_site(name="tool", pos=position, quat=turned, size=[0.004] * 3, rgba=[0, 0, 0, 0])
 
 
 def _add_label(mj: Any, arm: MjSpec, hand: MjsBody, mount: ArmMount, colour: Colour) -> None:

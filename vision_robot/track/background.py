@@ -202,6 +202,7 @@ class Background(Tracker, LooksAhead):
         return {
             "noise_levels": self._noise_levels,
             "threshold_factor": self._factor,
+            "closing_px": self._closing,
             "min_area_px": self._sieve.min_area_px,
             **self._figures,
             "samples": self._model.count,
@@ -267,7 +268,7 @@ class Background(Tracker, LooksAhead):
         if even.ndim == 3:
             frame, behind = even, self._ready.image
             if self.options.shadows:
-                objects = without_shadows(objects, frame, behind, self._noise_levels)
+                objects, behind = without_shadows(objects, frame, behind, self._noise_levels)
         if self.options.sharp:
             blobs, runs = analyse_edges(objects, frame, behind)
         else:

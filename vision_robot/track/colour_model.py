@@ -41,6 +41,7 @@ class ColourModel:
         self._first = np.zeros((kinds + 1, CELLS))  # the last is the background
         self._later = np.zeros((kinds + 1, CELLS))
         self.table: Array = np.zeros(CELLS, dtype=np.uint8)
+        self._likely: Array = self.table
         self._gains = np.ones(3)
 
     def learn(self, objects: Sequence[UInt8[Array, "_ 3"]], background: UInt8[Array, "k 3"]) -> None:
@@ -55,7 +56,7 @@ class ColourModel:
 
     def adopt(self, table: UInt8[Array, "cells"]) -> None:
         """Take a table as it is, before any pixel has been seen."""
-        self.table = table
+        self.table = self._likely = table
         self._index()
 
     def adapt(
@@ -89,6 +90,19 @@ class ColourModel:
             mask.ravel()[at] = self.table[self._index_of(colours)]
         return mask
 
+    def grown(
+        self, sure: UInt8[Array, "height width"], frame: Image, reach_px: int
+    ) -> UInt8[Array, "height width"]:
+        """The classes with pixels taken in that lie near sure ones, touch them, and are likelier than not."""
+        near = cv2.dilate(sure, np.ones((2 * reach_px + 1,) * 2, np.uint8))
+        at = np.flatnonzero((near > 0) & (sure == 0))
+        if not len(at):
+            return sure
+        grown = sure.copy()
+        kinds = self._likely[self._index_of(frame.reshape(-1, 3)[at])]
+        grown.ravel()[at] = np.where(kinds == near.ravel()[at], kinds, 0)
+        return grown
+
     def kind_of(self, colours: UInt8[Array, "k 3"]) -> UInt8[Array, "k"]:
         """0 or 1 + kind for single colours in the light now."""
         return self.table[self._index_of(colours)]
@@ -105,6 +119,10 @@ class ColourModel:
         most = np.take_along_axis(own, best[None], axis=0)[0]
         known = most > UNKNOWN * own.max(axis=1)[best]
         self.table = np.where(known & (most > smooth[-1]), best + 1, 0).astype(np.uint8)
+        # How rare objects are counts no more where an object is: there colours are weighed as shares.
+        share = most / np.maximum(counts[:-1].sum(axis=1)[best], 1)
+        likely = known & (share > smooth[-1] / max(counts[-1].sum(), 1))
+        self._likely = np.where(likely, best + 1, self.table).astype(np.uint8)
         self._index()
 
     def _smoothed(self, counts: Float[Array, "cells"]) -> Float[Array, "cells"]:

@@ -17,6 +17,9 @@ SMALLEST, LARGEST = 5e-5, 0.2
 
 SMALL_PX = 20
 
+SMOOTHED = 0.25
+"""Noise that a median of 5x5 pixels leaves of one level."""
+
 
 @dataclass(frozen=True)
 class Suggestion:
@@ -31,12 +34,17 @@ class Suggestion:
 
 
 def region_around(image: Image, point: tuple[float, float], tolerance: float) -> Bool[Array, "height width"]:
-    """The connected pixels around (u, v) whose smoothed colours lie within `tolerance` levels of it."""
+    """The connected pixels around (u, v) whose smoothed colours lie within `tolerance` levels of it.
+
+    In a noisy picture by as much more as noise moves what has been smoothed.
+    """
     u, v = round(point[0]), round(point[1])
     height, width = image.shape[:2]
     if not (0 <= u < width and 0 <= v < height):
         raise BadParameter("point picked", f"{u},{v}", f"inside the picture of {width}x{height} px")
     smooth = cv2.medianBlur(image, 5)
+    noise = 1.4826 * float(np.median(cv2.absdiff(image, smooth)))
+    tolerance = min(tolerance + 3 * SMOOTHED * noise, 255.0)
     grown = np.zeros((height + 2, width + 2), dtype=np.uint8)
     flags = 8 | cv2.FLOODFILL_FIXED_RANGE | cv2.FLOODFILL_MASK_ONLY | (1 << 8)
     cv2.floodFill(smooth, grown, (u, v), (0, 0, 0), (tolerance,) * 3, (tolerance,) * 3, flags)

@@ -94,6 +94,7 @@ class Follower:
         none, whole = np.zeros(0), np.zeros(0, dtype=np.int64)
         self._lives = _Lives(whole, whole, none, none, whole, none, none, whole, none)
         self._motion = Motion.start(np.zeros((0, 2)), none, none, 1.0)
+        self._before = self._motion.position
         self._time_s = np.nan
         self._next = 1
         self._names: dict[int, int] = {}
@@ -108,6 +109,7 @@ class Follower:
         """Follow one frame further; the rows of a frame `confirm` - 1 before it, for confirmed tracks."""
         dt = 0.0 if np.isnan(self._time_s) else time_s - self._time_s
         self._time_s = time_s
+        self._before = self._motion.position
         self._motion = self._motion.predicted(dt)
         self._bury(time_s)
         row = self._assigned(blobs)
@@ -162,7 +164,29 @@ class Follower:
             kept = possible[track, blob]
             track, blob = track[kept], blob[kept]
         row[blob] = track
+        self._knocked(blobs, row)
         return row
+
+    def _knocked(self, blobs: Blobs, row: Int[Array, "m"]) -> None:
+        """Give blobs nobody expected to tracks that miss theirs: what is bumped into turns at once.
+
+        A track seen in the frame before is within its own length, or as far as it went before, of where
+        it was; the nearest pair goes first.
+        """
+        free = np.flatnonzero(row < 0)
+        lost = np.setdiff1d(np.flatnonzero((self._lives.missed == 0) & (self._lives.hits > 1)), row)
+        if not len(free) or not len(lost):
+            return
+        some, life = blobs.rows(free), self._lives.rows(lost)
+        apart = np.linalg.norm(self._before[lost][:, None] - some.centroid_px[None], axis=2)
+        went = np.linalg.norm(self._motion.position[lost] - self._before[lost], axis=1)
+        reach = np.maximum(np.maximum(some.axes_px[:, 0], np.sqrt(some.area_px)), went[:, None])
+        change = np.abs(np.log(some.area_px[None] / life.area[:, None]))
+        possible = (apart < reach) & (change < 2 * AREA_SPREAD) & (life.kind[:, None] == some.kind[None])
+        while possible.any():
+            t, b = np.unravel_index(np.where(possible, apart, np.inf).argmin(), possible.shape)
+            row[free[b]] = lost[t]
+            possible[t], possible[:, b] = False, False
 
     @staticmethod
     def _is_plain(possible: Array) -> bool:
@@ -230,7 +254,11 @@ class Follower:
         inside = ((place > -margin) & (place < np.array(self._size) + margin)).all(axis=1)
         remembered = (life.hits >= self.options.confirm) & (time_s - life.seen_s <= self.options.max_gap_s)
         alive = inside & (remembered | (life.missed <= 1))
-        self._motion, self._lives = self._motion.rows(alive), life.rows(alive)
+        self._motion, self._lives, self._before = (
+            self._motion.rows(alive),
+            life.rows(alive),
+            self._before[alive],
+        )
 
     def _name(self) -> None:
         """Number what is confirmed; what only comes and goes leaves no gaps in the numbers."""

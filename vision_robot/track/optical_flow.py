@@ -13,10 +13,12 @@ from vision_robot.track.admission import Admission
 from vision_robot.track.blob_analysis import analyse_runs
 from vision_robot.track.blobs import Blobs
 from vision_robot.track.edges import analyse_edges
+from vision_robot.track.gain import channel_gains, gain_tables
 from vision_robot.track.ghosts import are_ghosts
 from vision_robot.track.motion_gate import MotionGate
 from vision_robot.track.parting import parted
 from vision_robot.track.runs import Runs
+from vision_robot.track.shadow import without_shadows
 from vision_robot.track.sieve import AreaSieve
 from vision_robot.track.still_scene import StillScene
 from vision_robot.track.tracker import LooksAhead, Remark, Tracker
@@ -29,6 +31,9 @@ MOVING_SHARE = 0.1
 
 SAMPLES, LOOK_AHEAD_S = 15, 10.0
 """Frames whose median is the scene to begin with, and the time they are spread over."""
+
+SAME_LIGHT = 0.003
+"""Gains closer to 1 than this are not corrected."""
 
 OWN_LIFE = 10
 """Frames an object must have been seen alone before it is parted from another that it touches."""
@@ -44,6 +49,8 @@ class OpticalFlowOptions:
     """Least motion between the two frames; None: from the noise of the flow."""
     hold_s: float = 60.0
     """How long an object that stops stays one."""
+    shadows: bool = True
+    """Take shadows off objects."""
     closing_px: int | None = None
     """Gaps up to this are closed; None: a hundredth of the picture's height."""
     min_area_px: float | None = None
@@ -104,6 +111,7 @@ class OpticalFlow(Tracker, LooksAhead):
         self._time_s = time_s
         self._frames += 1
         seen = self._gate.see(frame)
+        frame = self._even(frame)
         if seen is None:
             self._scene.follow(frame, self._mask, lapse_s)
             return Blobs.empty()
@@ -151,6 +159,7 @@ class OpticalFlow(Tracker, LooksAhead):
             "threshold_px": self._gate.threshold_px,
             "noise_levels": self._scene.noise_levels,
             "threshold_levels": self._scene.threshold_levels,
+            "closing_px": self._closing,
             "min_area_px": self._sieve.min_area_px,
             "camera_shift_px": float(np.linalg.norm(self._gate.shift_px)),
             "ghosts": self._ghosts,
@@ -167,6 +176,14 @@ class OpticalFlow(Tracker, LooksAhead):
         self._ages: dict[int, int] = {}
         gap = self.options.closing_px
         self._closing = round(frame.shape[0] / 100) | 1 if gap is None else int(gap)
+
+    def _even(self, frame: Image) -> Image:
+        """The frame in the still scene's light: divided by how much brighter each channel is as a whole."""
+        assert self._scene is not None
+        gains = channel_gains(frame, self._scene.image)
+        if np.abs(gains - 1).max() <= SAME_LIGHT:
+            return frame
+        return np.asarray(cv2.LUT(frame, gain_tables(1 / gains)), dtype=np.uint8)
 
     def _unlike(self, frame: Image) -> UInt8[Array, "height width"]:
         """Where the frame does not show the still scene: lone pixels off, gaps closed."""
@@ -228,8 +245,11 @@ class OpticalFlow(Tracker, LooksAhead):
 
     def _analysed(self, mask: UInt8[Array, "height width"], frame: Image) -> tuple[Blobs, Runs]:
         assert self._scene is not None
+        behind = self._scene.image
+        if self.options.shadows:
+            mask, behind = without_shadows(mask, frame, behind, self._scene.noise_levels)
         if self.options.sharp:
-            return analyse_edges(mask, frame, self._scene.image)
+            return analyse_edges(mask, frame, behind)
         runs = Runs.of_mask(mask)
         return analyse_runs(runs, axes="matlab"), runs
 

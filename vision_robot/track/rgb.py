@@ -13,6 +13,7 @@ from vision_robot.track.blobs import Blobs
 from vision_robot.track.colour_model import ColourModel, cube_colours
 from vision_robot.track.colour_names import colour_named
 from vision_robot.track.colour_pick import named_region, region_around, region_in, suggestions
+from vision_robot.track.crumbs import are_crumbs
 from vision_robot.track.edges import analyse_edges
 from vision_robot.track.gain import channel_gains
 from vision_robot.track.runs import Runs
@@ -37,6 +38,12 @@ GROWN = 3.0
 """An object's pixels may grow by this factor before they stop teaching: no model swallows the scene."""
 
 SAME_LIGHT = 0.005
+
+PATCHY, GROW_PX = 0.97, 3
+"""A colour of whose pixels less than this is sure is grown into what lies near and is likelier its own."""
+
+COMPACT = 0.6
+"""Share of its ellipse that a thing covers; what noise scatters covers less."""
 
 ALIKE = 5.0
 """Things up to so many times larger or smaller than what was picked count as more of the same."""
@@ -112,6 +119,9 @@ class Rgb(Tracker):
                 self._ready.light(gains)
         self._frame += 1
         classes = self._ready.classify(frame)
+        if min(self._learned_share) < PATCHY:
+            # What noise has made sure by chance must not grow.
+            classes = self._ready.grown(np.asarray(cv2.medianBlur(classes, 3)), frame, GROW_PX)
         self._mask = np.zeros(classes.shape, dtype=np.uint8)
         found = [self._of_kind(kind, classes, frame) for kind in range(len(self.names))]
         self._seen_in += [len(blobs) > 0 for blobs in found]
@@ -209,7 +219,7 @@ class Rgb(Tracker):
         alone.learn([frame[region]], frame[:0].reshape(-1, 3))
         runs = Runs.of_mask(cv2.medianBlur(alone.classify(frame), 3))
         blobs, area = analyse_runs(runs), float(region.sum())
-        alike = (blobs.area_px > area / ALIKE) & (blobs.area_px < area * ALIKE) & (blobs.extent > 0.3)
+        alike = (blobs.area_px > area / ALIKE) & (blobs.area_px < area * ALIKE) & _compact(blobs)
         return near | runs.painted(alike, region.shape)
 
     def _by_name(self, asked: list[tuple[str, Array]]) -> UInt8[Array, "cells"]:
@@ -238,6 +248,7 @@ class Rgb(Tracker):
         if self.options.sharp and kept.any():
             found, runs = analyse_edges(runs.painted(kept.astype(np.uint8), classes.shape), frame, kind=kind)
             kept = found.area_px >= self._sieves[kind].min_area_px
+        kept &= ~are_crumbs(runs, found.area_px, (frame.shape[0], frame.shape[1]))
         if kept.any():
             self._mask += runs.painted(np.where(kept, kind + 1, 0).astype(np.uint8), classes.shape) * (
                 self._mask == 0
@@ -263,6 +274,11 @@ class Rgb(Tracker):
     def _even(self, colours: UInt8[Array, "k 3"]) -> UInt8[Array, "k 3"]:
         """Colours as the light of the first frame would show them."""
         return np.clip(colours / self._gains, 0, 255).astype(np.uint8)
+
+
+def _compact(blobs: Blobs) -> Bool[Array, "n"]:
+    """What fills its ellipse, however slender and however it lies."""
+    return blobs.area_px > COMPACT * np.pi / 4 * blobs.axes_px.prod(axis=1)
 
 
 def _whole(value: int) -> Array:

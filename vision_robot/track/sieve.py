@@ -59,7 +59,11 @@ class AreaSieve:
         return self._again / np.maximum(self._seen, 1e-9)
 
     def _learn(self, blobs: Blobs) -> None:
-        """Was each blob of the frame before seen again, about as large and no farther than its own size?"""
+        """Was each blob of the frame before seen again, about as large?
+
+        No farther than its own length, or anywhere if it is the only one of about its size in both
+        frames: chance does not bring one such blob to every frame, a fast object does.
+        """
         before, self._before = self._before, blobs
         if not len(before):
             return
@@ -72,8 +76,10 @@ class AreaSieve:
                 for a, b in zip(before.centroid_px.T, blobs.centroid_px.T, strict=True)
             )
             ratio = before.area_px[:, None] / np.maximum(blobs.area_px[None], 1e-9)
-            near = du * du + dv * dv < np.maximum(before.area_px, 4.0)[:, None]
-            again = (near & (ratio > 0.4) & (ratio < 2.5)).any(axis=1).astype(float)
+            alike = (ratio > 0.4) & (ratio < 2.5)
+            near = du * du + dv * dv < np.maximum(before.axes_px[:, :1] ** 2, 4.0)
+            only = (alike.sum(axis=1, keepdims=True) == 1) & (alike.sum(axis=0) == 1)
+            again = (alike & (near | only)).any(axis=1).astype(float)
         at = _class_of(before.area_px)
         self._seen += np.bincount(at, minlength=CLASSES)
         self._again += np.bincount(at, again, minlength=CLASSES)

@@ -8,12 +8,14 @@ from typing import Any
 import numpy as np
 
 from vision_robot.evaluate.dial import scene_at
-from vision_robot.evaluate.sweep import Cell
+from vision_robot.evaluate.sweep import Cell, Measured
 from vision_robot.pick.closed_loop import LAWS
 from vision_robot.pick.episodes import OPEN, run_episode
 from vision_robot.pick.episodes import Plan as PickPlan
 from vision_robot.pick.faults import with_fault, with_lens
+from vision_robot.pick.film import Still, Stills
 from vision_robot.pick.world import CAMERA, World, ordinary_world
+from vision_robot.report.film_strip import film_strip
 from vision_robot_synth.suites.suite import Plan, Suite
 
 __all__ = ["SUITE", "faulty_world", "grasp_figures"]
@@ -54,6 +56,24 @@ SCENES: dict[str, dict[str, float]] = {
     },
 }
 
+QUICK = (NOMINAL, KNOCKED, *(f"camera-rotation-deg={size:g}" for size in DIALS["camera-rotation-deg"][2]))
+"""What a look in minutes is content with."""
+
+SHOWN = ("seen", "down", "lift")
+"""Phases whose ends stand in a film strip, besides the last picture."""
+
+AXES = {
+    "camera-rotation-deg": "the camera is turned after it was calibrated [°]",
+    "camera-shift-mm": "the camera is shifted after it was calibrated [mm]",
+    "square-size-percent": "the board's squares are larger than typed [%]",
+    "ignored-distortion": "distortion of the lens, fitted by a model without any (1: the usual lens)",
+    "joint-offset-deg": "encoders off, from joint to joint to the other side [°]",
+    "backlash-deg": "play in every turning joint [°]",
+    "corner-noise-px": "noise of the calibration's corners [px]",
+    "image-noise-levels": "noise of the pictures [grey levels]",
+    "latency-ms": "from a picture to its answer [ms]",
+}
+
 FOR_TRACKERS = (NOMINAL, *(scene for scene in SCENES if scene.startswith("image-noise")))
 """Scenes in which it matters who looks; elsewhere the loops are run with one tracker."""
 
@@ -61,9 +81,12 @@ FOR_TRACKERS = (NOMINAL, *(scene for scene in SCENES if scene.startswith("image-
 def cells(plan: Plan) -> Sequence[Cell]:
     """Every scene by every loop by every seed; trackers where they matter, or where they are asked for."""
     scenes, methods = SUITE.chosen(plan)
+    if plan.quick and not plan.scenes:
+        scenes = QUICK
     return [
         Cell("grasp", scene, method, seed, f"{__name__}:grasp_figures",
-             {"method": method, "seed": seed, "faults": SCENES[scene]})
+             # One film strip a scene and method is enough to look at.
+             {"method": method, "seed": seed, "faults": SCENES[scene], "strip": seed == plan.first_seed})
         for seed in plan.seed_range
         for scene in scenes
         for method in methods
@@ -76,7 +99,9 @@ def grasp_figures(
     method: str,
     seed: int,
     faults: Mapping[str, float],
-) -> dict[str, float]:
+    *,
+    strip: bool = False,
+) -> Measured:
     """One episode: how far it got, and how far off; NaN where it did not come to that.
 
     The same seed has the same rod at the same place, the same calibration and the same noise for all
@@ -84,9 +109,10 @@ def grasp_figures(
     """
     loop, tracker = METHODS[method]
     options: Mapping[str, Any] = TRACKERS[tracker]
-    episode = run_episode(faulty_world(faults), PickPlan(tracker, options, loop), seed)
+    stills = Stills() if strip else None
+    episode = run_episode(faulty_world(faults), PickPlan(tracker, options, loop), seed, witness=stills)
     closing, placing = episode.closing, episode.placing
-    return {
+    figures = {
         "grasp_success": float(episode.lifted),
         "place_success": float(episode.placed),
         "position_error_mm": 1000 * closing.position_m if closing else np.nan,
@@ -94,6 +120,14 @@ def grasp_figures(
         "place_error_mm": 1000 * placing.position_m if placing else np.nan,
         "pick_s": episode.seconds,
     }
+    return Measured(figures, None if stills is None else _strip(stills.pictures))
+
+
+def _strip(pictures: Sequence[Still]) -> str:
+    """What was seen, the tool come down, and what came of it."""
+    shown = [one for one in pictures[:-1] if one.phase in SHOWN] + [pictures[-1]]
+    nobody = [np.zeros((0, 4))] * len(shown)
+    return film_strip([one.image for one in shown], nobody, nobody, names=[one.phase for one in shown])
 
 
 def faulty_world(faults: Mapping[str, float]) -> World:
@@ -112,4 +146,4 @@ def faulty_world(faults: Mapping[str, float]) -> World:
     return world
 
 
-SUITE = Suite("grasp", tuple(SCENES), tuple(METHODS), "grasp_success", 0.5, cells)
+SUITE = Suite("grasp", tuple(SCENES), tuple(METHODS), "grasp_success", 0.5, cells, axes=AXES)

@@ -4,8 +4,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 from vision_robot.errors import BadParameter
+from vision_robot.evaluate.claim import Claim
 from vision_robot.evaluate.sweep import Cell
 
 __all__ = ["SUITES", "Plan", "Suite", "suite_named"]
@@ -58,6 +60,12 @@ class Suite:
     """How its times are measured, where that is not the usual way; for the page."""
     axes: Mapping[str, str] = field(default_factory=dict)
     """What the severities of each dial are, in words; for the page."""
+
+    claims: tuple[Claim, ...] = ()
+    """Sentences of others that its runs are asked about."""
+
+    video_of: Callable[[Cell], Mapping[str, Any] | None] | None = None
+    """What a cell asks `rendered_set` for, where sets are to be removed after their last cell."""
 
     def chosen(self, plan: Plan) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Scenes and methods of a plan. Raises BadParameter for names the suite lacks, listing its own."""

@@ -36,13 +36,13 @@ def test_in_the_plane_it_is_the_derivative_of_the_projection(x, y, height):
 
 
 @given(SIDE, SIDE, SIDE, SIDE, st.floats(0.0, 0.2))
-def test_a_whole_step_leaves_a_thousandth_of_the_error(x, y, to_x, to_y, height):
-    """The mean of both interaction matrices makes one step nearly all of the way."""
+def test_two_whole_steps_leave_a_thousandth_of_the_error(x, y, to_x, to_y, height):
+    """The mean of both interaction matrices makes one step nearly all of the way; depth is only believed."""
     point, goal = np.array([x, y, height]), np.array([to_x, to_y])
     wanted = PLANE.pixels(goal[None], z_m=height)[0]
     away = np.linalg.norm(goal - point[:2])
     step = image_step(PLANE, point, PLANE.pixels(point[None, :2], z_m=height)[0], wanted)
-    assert np.linalg.norm(point[:2] + step - goal) <= 2e-2 * away
+    assert np.linalg.norm(point[:2] + step - goal) <= 5e-2 * away + 1e-12
     point[:2] += step
     again = image_step(PLANE, point, PLANE.pixels(point[None, :2], z_m=height)[0], wanted)
     assert np.linalg.norm(point[:2] + again - goal) <= 1e-3 * away + 1e-12

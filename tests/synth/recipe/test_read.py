@@ -60,7 +60,7 @@ def test_a_recipe_extends_another_table_by_table(tmp_path):
         ("frames = 0", "frames is 0: it must be a whole number from 1"),
         ("frames = [3, 9]", "frames is"),
         ("fps = true", "fps is True"),
-        ("size = [640]", "size is .640.: it must be a list of 2 whole numbers from 16 on"),
+        ("size = [640]", "size is .640.: it must be a list of 2 whole numbers from 16 to 16384"),
         ("[camera]\ntilt_deg = [40, 10]", "camera.tilt_deg"),
         ("[light]\nshadows = 1", "light.shadows is 1: it must be true or false"),
         ("things = 3", "things must be a table"),

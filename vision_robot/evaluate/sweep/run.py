@@ -48,7 +48,7 @@ def run_sweep(
     `workspace` lies beside the outcomes. Raises NoScheduler where no cluster answers, and what
     `measure` raises.
     """
-    workspace = store.folder / "workspace"
+    workspace = store.workspace
     if workers < 1:
         raise BadParameter("workers", workers, "a whole number from 1 on")
     if patience_s is not None and not patience_s > 0:
@@ -58,7 +58,7 @@ def run_sweep(
     missing = [cell for key, cell in wanted.items() if key not in known]
     together = [cell for cell in missing if not cell.alone]
     progress(len(known), len(wanted))
-    alone = _in_processes([cell for cell in missing if cell.alone], 1, workspace, patience_s)
+    alone = _in_processes([cell for cell in missing if cell.alone], 1, workspace, patience_s, one_thread=True)
     if scheduler:
         parallel = _on_cluster(together, scheduler, workspace, patience_s)
     else:
@@ -73,7 +73,12 @@ def run_sweep(
 
 
 def _in_processes(
-    cells: Sequence[Cell], workers: int, workspace: Path, patience_s: float | None
+    cells: Sequence[Cell],
+    workers: int,
+    workspace: Path,
+    patience_s: float | None,
+    *,
+    one_thread: bool = False,
 ) -> Iterator[Outcome]:
     if not cells:
         return
@@ -95,7 +100,7 @@ def _in_processes(
 
     with ExitStack() as ending:
         for _ in range(workers):
-            kept.put(ending.enter_context(Apart(limit_s, one_thread=workers > 1)))
+            kept.put(ending.enter_context(Apart(limit_s, one_thread=one_thread or workers > 1)))
         run = Parallel(n_jobs=workers, backend="threading", return_as="generator_unordered")
         for outcome in run(delayed(measured)(cell) for cell in cells):
             assert isinstance(outcome, Outcome), "measured returns nothing else"

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import vision_robot
 from vision_robot.errors import BadParameter, BadTable
 from vision_robot.evaluate.sweep.cell import Cell, Outcome
 from vision_robot.files import write_text
@@ -22,6 +23,25 @@ class Store:
 
     def __init__(self, folder: Path | str):
         self.folder = Path(folder)
+
+    @property
+    def workspace(self) -> Path:
+        """Where cells keep what several of them need."""
+        return self.folder / "workspace"
+
+    def other_versions(self) -> list[str]:
+        """Versions of this library that have kept outcomes here, but this one, which is noted down.
+
+        Their outcomes have other keys and are not found: methods may have changed.
+        """
+        place = self.folder / "versions.json"
+        try:
+            known = [str(one) for one in json.loads(place.read_text(encoding="utf-8"))]
+        except (OSError, ValueError, TypeError):
+            known = []
+        if vision_robot.__version__ not in known:
+            write_text(place, json.dumps([*known, vision_robot.__version__]) + "\n")
+        return [one for one in known if one != vision_robot.__version__]
 
     def find(self, cell: Cell) -> Outcome | None:
         """The outcome of this very cell; None where there is none, or its file is damaged."""

@@ -11,9 +11,12 @@ from vision_robot.pick.servo.stage import Glimpse
 from vision_robot.pick.sighting import Sighting
 from vision_robot.types import Array, Float
 
-__all__ = ["CameraShift", "camera_shift"]
+__all__ = ["EXACT_PX", "CameraShift", "camera_shift"]
 
 MOST_STEPS, DONE = 12, 1e-10
+
+EXACT_PX = 1e-3
+"""Pixels better than this are taken for this: beside exact ones the prior would drown in rounding."""
 
 ALONG_M = 0.02
 """Half the length of axis that is carried along when a thing is met again."""
@@ -76,7 +79,7 @@ def camera_shift(
     if glimpses:
         points = plane.cam_from_station.apply(np.stack([one.label_in_station for one in glimpses]))
         pixels = np.stack([one.pixel for one in glimpses])
-        weight = np.array([one.sigma_px for one in glimpses])[:, None] ** -1
+        weight = 1 / np.maximum([one.sigma_px for one in glimpses], EXACT_PX)[:, None]
         for _ in range(MOST_STEPS):
             residual, J = _seen(plane.camera, shift.apply(points), pixels, weight)
             gone = np.concatenate([shift.rotvec(), shift.translation])

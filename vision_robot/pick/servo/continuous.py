@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from vision_robot.errors import LostSight, NothingSeen, ServoAstray
+from vision_robot.geometry import WorkPlane
+from vision_robot.pick.servo.camera_shift import EXACT_PX
 from vision_robot.pick.servo.interaction import image_step
 from vision_robot.pick.servo.look_move_look import SURE, known_by
 from vision_robot.pick.servo.patience import LABEL_ON_HAND, still_looks
@@ -100,6 +102,7 @@ def _settled(
 
 def _noise_m(stage: Stage, seen: Glimpse) -> float:
     """What the noise of the label's pixel is worth in {S} [m], in the worst direction."""
-    exact = type(stage.plane).exact(stage.plane.camera, stage.plane.cam_from_station)
-    _, covariance = exact.measure(seen.pixel[None], seen.sigma_px, z_m=float(seen.label_in_station[2]))
+    exact = WorkPlane.exact(stage.plane.camera, stage.plane.cam_from_station)
+    sigma = max(seen.sigma_px, EXACT_PX)
+    _, covariance = exact.measure(seen.pixel[None], sigma, z_m=float(seen.label_in_station[2]))
     return float(np.sqrt(np.linalg.eigvalsh(covariance[0])[-1]))

@@ -1,13 +1,14 @@
 """The hand of a cell as the laws see it: moved by the player, looked at by the cell's camera."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from vision_robot.arm import base_from_tool
 from vision_robot.errors import NothingSeen
-from vision_robot.geometry import WorkPlane
+from vision_robot.geometry import SE3, WorkPlane
 from vision_robot.pick.episode import Look
-from vision_robot.pick.goal import joints_for, station_from_grasp
+from vision_robot.pick.goal import joints_for, station_from_grasp, upright
 from vision_robot.pick.hand_label import LABEL_SIGMA_PX, HandLabel, seen_whole
 from vision_robot.pick.knowledge import Knowledge
 from vision_robot.pick.look import Eye
@@ -40,6 +41,8 @@ class Hand:
     true_tracking: bool = False
     turned: bool = False
     """The other way round than the yaw of the thing would have it: fingers are alike."""
+    bent: Float[Array, "n"] | None = None
+    """Joint values on whose side the elbow is held; None: as it is held now."""
     looks: list[Look] = field(default_factory=list)
     chance: np.random.Generator = field(default_factory=lambda: np.random.default_rng(0))
     """By which pictures are lost."""
@@ -103,13 +106,31 @@ class Hand:
 
     def joints(self, place: Sighting, height_m: float) -> Float[Array, "n"]:
         """Joint values that bring the believed label over `place`, this way round."""
+        goal = self._goal(place, height_m)
+        return joints_for(
+            self.player.solver,
+            self.knowledge.base_from_station,
+            goal,
+            self.player.joints if self.bent is None else self.bent,
+            back_towards_m=goal.translation[:2] - goal.rotation[:2, 1],
+        )
+
+    def ways(self, place: Sighting, height_m: float) -> list["Hand"]:
+        """Both ways round, with each bend of the arm that reaches there."""
+        found = []
+        for way in (replace(self, turned=False), replace(self, turned=True)):
+            goal = upright(base_from_tool(self.knowledge.base_from_station, way._goal(place, height_m)))
+            bends = self.player.solver.branches(SE3(goal.rotation[None], goal.translation[None])).of_goal(0)
+            # An arm that was measured to be off its drawing may reach no pose upright exactly.
+            found += [replace(way, bent=bend) for bend in bends] or [way]
+        return found
+
+    def _goal(self, place: Sighting, height_m: float) -> SE3:
+        """station_from_tool with the label over `place`."""
         yaw = place.yaw_rad + (np.pi if self.turned else 0.0)
         turn = station_from_grasp(place.position_m, yaw, 0.0).rotation
         beside = place.position_m - (turn @ self.label.tool_from_label.translation)[:2]
-        goal = station_from_grasp(beside, yaw, place.height_m + height_m)
-        towards = beside - turn[:2, 1]
-        station = self.knowledge.base_from_station
-        return joints_for(self.player.solver, station, goal, self.player.joints, back_towards_m=towards)
+        return station_from_grasp(beside, yaw, place.height_m + height_m)
 
     def clearance_m(self, place: Sighting, height_m: float) -> float:
         """How much room the lines of sight to the label have there."""

@@ -26,7 +26,7 @@ class Servoing:
     enough_m: float = 2e-3
     """What is known worse than this when the label cannot be seen is no reason to go on."""
     most_looks: int = 8
-    gain_per_s: float = 4.0
+    gain_per_s: float = 8.0
     """Of the continuous laws: the error falls to 1/e in its inverse."""
     compensate: bool = True
     """Take off an error what was commanded since its picture: latency then costs no stability."""
