@@ -90,7 +90,9 @@ class ColourModel:
             mask.ravel()[at] = self.table[self._index_of(colours)]
         return mask
 
-    def grown(self, sure: UInt8[Array, "height width"], frame: Image, reach_px: int) -> Image:
+    def grown(
+        self, sure: UInt8[Array, "height width"], frame: Image, reach_px: int
+    ) -> UInt8[Array, "height width"]:
         """The classes with pixels taken in that lie near sure ones, touch them, and are likelier than not."""
         near = cv2.dilate(sure, np.ones((2 * reach_px + 1,) * 2, np.uint8))
         at = np.flatnonzero((near > 0) & (sure == 0))
