@@ -37,7 +37,7 @@ def test_a_whole_label_is_where_its_corners_are():
     assert np.allclose(found, CORNERS.mean(axis=0), atol=0.1)
 
 
-@pytest.mark.parametrize("share", [0.9, 1.1])
+@pytest.mark.parametrize("share", [0.92, 1.08])
 def test_a_camera_nearer_or_farther_off_than_believed_changes_nothing(share):
     middle = CORNERS.mean(axis=0)
     assert seen_whole(drawn(middle + share * (CORNERS - middle)), CORNERS) is not None
