@@ -60,6 +60,6 @@ def test_axes_pool_their_severities_and_words_say_no_more():
     first, *rest = claim_words([whole, *axes], CLAIM)
     assert first.startswith("The text says that rgb is better than flow and background. In hota, over all")
     assert rest[0] == "It holds on noise (rgb 0.90, flow 0.60, background 0.30)."
-    assert rest[1].startswith("It does not hold on colour, where flow and background is better")
+    assert rest[1].startswith("It does not hold on colour, where flow and background are better")
     assert rest[2].startswith("No difference that matters on usual")
     assert claim_words([], CLAIM) == []

@@ -147,7 +147,8 @@ def _axis_words(one: Finding, verdict: Verdict, claim: Claim) -> str:
     if verdict == "fails":
         ahead = " and ".join(pair.better for pair in one.pairs
                              if pair.verdict == "better" and pair.worse == claim.method)  # fmt: skip
-        return f"{one.axis}, where {ahead} is better ({values})"
+        verb = "are" if " and " in ahead else "is"
+        return f"{one.axis}, where {ahead} {verb} better ({values})"
     return f"{one.axis} ({values})"
 
 
