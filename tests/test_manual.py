@@ -23,7 +23,7 @@ PAGES = [path for path in sorted(DOCS.rglob("*.md")) if path.parent.name not in 
 BLOCK = re.compile(r"^ *```(\w+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL)
 
 # Hosts of packages and places on a machine have no business in a manual.
-FORBIDDEN = re.compile(r"pypi\.org|pythonhosted|/work/|/tmp/|/home/|/root/|raw\.githubusercontent")
+FORBIDDEN = re.compile(r"/(?:work|tmp|home|root)/|https?://\S+\.(?:whl|tar\.gz|zip)|raw\.githubusercontent")
 
 
 def blocks(language: str) -> list[tuple[str, str]]:
