@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from vision_robot.track.runs import Runs
-from vision_robot.types import Array, Bool, Float, Image, UInt8
+from vision_robot.types import Array, Bool, Float, Image, Int, UInt8
 
 __all__ = ["without_shadows"]
 
@@ -49,21 +49,24 @@ def without_shadows(
     label = np.repeat(runs.label, runs.stop - runs.first) - 1  # in the order of the pixels
     area = np.bincount(label, minlength=runs.count)
     other = np.bincount(label, ~like, minlength=runs.count) / area
-    texture = _texture(seen, behind, inner, label)
     shadow = like & (factor < BRIGHTEST) & (other >= LEFT)[label]
-    through = (other < LEFT) & (texture > SAME_TEXTURE)
-    if shadow.any():
-        # Specks too small for detail are of the shadows beside them where they are as dark.
-        darkest, brightest = np.quantile(factor[shadow], (0.05, 0.95))
-        mean = np.bincount(label, factor, minlength=runs.count) / area
-        through |= (other < LEFT) & np.isnan(texture) & (mean > darkest) & (mean < brightest)
+    through = other < LEFT
+    if through.any():
+        texture = _texture(seen, behind, inner, label)
+        same = texture > SAME_TEXTURE
+        if shadow.any():
+            # Specks too small for detail are of the shadows beside them where they are as dark.
+            darkest, brightest = np.quantile(factor[shadow], (0.05, 0.95))
+            mean = np.bincount(label, factor, minlength=runs.count) / area
+            same |= np.isnan(texture) & (mean > darkest) & (mean < brightest)
+        through &= same
     rest = inner.copy()
     rest.ravel()[at[shadow | through[label]]] = 0
-    kept, lit = mask.copy(), background.copy()
-    kept[part] = _without_crumbs(rest, runs)
-    # Only outside of what is left: the dark side of an object must not pass for background in the shade.
-    shaded = _in_shadow(behind, at[shadow], factor[shadow], (inner.shape[0], inner.shape[1]))
-    lit[part] = np.where(rest[..., None] > 0, behind, shaded)
+    kept, lit = mask.copy(), background
+    kept[part] = _without_crumbs(rest, at, label)
+    if shadow.any():
+        lit = background.copy()
+        _shade(lit[part], rest, at[shadow], factor[shadow])
     return kept, lit
 
 
@@ -94,30 +97,34 @@ def _texture(seen: Image, behind: Image, mask: UInt8[Array, "h w"], label: Array
     return np.where(told, cross / np.sqrt(np.maximum(own * theirs, 1e-9)), np.nan)
 
 
-def _without_crumbs(rest: UInt8[Array, "h w"], pieces: Runs) -> UInt8[Array, "h w"]:
-    """The rest less what is much smaller than the largest rest of the same piece."""
+def _without_crumbs(
+    rest: UInt8[Array, "h w"], at: Int[Array, "k"], label: Int[Array, "k"]
+) -> UInt8[Array, "h w"]:
+    """The rest less what is much smaller than the largest rest of its piece, by the label of pixels `at`."""
     left = Runs.of_mask(rest)
-    if left.count == pieces.count:
+    count = int(label.max()) + 1
+    if left.count == count:
         return rest
-    origin = pieces.painted(np.arange(1, pieces.count + 1, dtype=np.int32), (rest.shape[0], rest.shape[1]))
-    first = np.zeros(left.count, dtype=np.int64)
-    first[left.label - 1] = origin[left.v, left.first]
+    piece = np.zeros(left.count, dtype=np.int64)
+    piece[left.label - 1] = label[np.searchsorted(at, left.v * rest.shape[1] + left.first)]
     area = np.bincount(left.label - 1, left.stop - left.first, minlength=left.count)
-    largest = np.zeros(pieces.count + 1)
-    np.maximum.at(largest, first, area)
-    kept = area >= CRUMB * largest[first]
+    largest = np.zeros(count)
+    np.maximum.at(largest, piece, area)
+    kept = area >= CRUMB * largest[piece]
     return left.painted(
         np.where(kept, rest.max(initial=1), 0).astype(np.uint8), (rest.shape[0], rest.shape[1])
     )
 
 
-def _in_shadow(behind: Image, at: Array, factor: Float[Array, "k"], shape: tuple[int, int]) -> Image:
-    """The background times the mean factor of the shadow pixels near each pixel, 1 where there are none."""
-    if not len(at):
-        return behind
-    total, count = np.zeros(shape, np.float32), np.zeros(shape, np.float32)
+def _shade(behind: Image, rest: UInt8[Array, "h w"], at: Int[Array, "k"], factor: Float[Array, "k"]) -> None:
+    """Multiply the background, in place, with the mean factor of the shadow pixels near each pixel.
+
+    Only outside of what is left: the dark side of an object must not pass for background in the shade.
+    """
+    total, count = np.zeros(rest.shape, np.float32), np.zeros(rest.shape, np.float32)
     total.ravel()[at], count.ravel()[at] = factor, 1
     size = (2 * REACH + 1,) * 2
     total, count = cv2.boxFilter(total, -1, size), cv2.boxFilter(count, -1, size)
-    light = np.where(count > 0.5 / size[0] ** 2, total / np.maximum(count, 1e-6), 1.0)
-    return np.clip(behind * light[..., None], 0, 255).astype(np.uint8)
+    v, u = np.nonzero((count > 0.5 / size[0] ** 2) & (rest == 0))
+    light = total[v, u] / count[v, u]
+    behind[v, u] = np.clip(behind[v, u] * light[:, None], 0, 255).astype(np.uint8)

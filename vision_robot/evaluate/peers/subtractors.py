@@ -1,75 +1,33 @@
 """OpenCV's background subtractors, with their own defaults, followed by blob analysis."""
 
 from abc import abstractmethod
-from dataclasses import dataclass
 from typing import Any
 
 import cv2
-import numpy as np
 
-from vision_robot.errors import BadParameter
-from vision_robot.track.blob_analysis import analyse
-from vision_robot.track.blobs import Blobs
-from vision_robot.track.tracker import Remark, Tracker
-from vision_robot.types import Array, Image, UInt8
+from vision_robot.evaluate.peers.mask_blobs import MaskBlobs
+from vision_robot.types import Array, Bool, Image
 
-__all__ = ["Cnt", "Gmg", "Gsoc", "Knn", "Lsbp", "Mog2", "SubtractorOptions"]
+__all__ = ["Cnt", "Gmg", "Gsoc", "Knn", "Lsbp", "Mog2"]
 
 SHADOW = 127
 """What MOG2 and KNN write for shadows."""
 
 
-@dataclass(frozen=True)
-class SubtractorOptions:
-    """What is done with a subtractor's mask."""
+class OpenCvSubtractor(MaskBlobs):
+    """What a subtractor of OpenCV takes for foreground, shadows not."""
 
-    min_area_px: float = 30.0
-    """Smaller blobs are noise."""
-    closing_px: int = 3
-    """Side of the square that closes gaps; 0 for none."""
-
-    def __post_init__(self) -> None:
-        for name in ("min_area_px", "closing_px"):
-            if not getattr(self, name) >= 0:
-                raise BadParameter(name, getattr(self, name), "zero or positive")
-
-
-class OpenCvSubtractor(Tracker):
-    """Mask of an OpenCV subtractor, median filter, closing, blobs."""
-
-    Options = SubtractorOptions
-
-    def __init__(self, options: SubtractorOptions | None = None) -> None:
-        self._options = options or SubtractorOptions()
+    def __init__(self, options: Any = None) -> None:
+        super().__init__(options)
         self._subtractor = self.create()
-        self._mask = np.zeros((1, 1), np.uint8)
 
     @abstractmethod
     def create(self) -> Any:
         """A subtractor that has seen nothing."""
 
-    def find(self, frame: Image, time_s: float) -> Blobs:  # noqa: ARG002 - they know no time
-        """Blobs of the cleaned mask."""
-        raw = self._subtractor.apply(frame)
-        mask = cv2.medianBlur((raw > SHADOW).astype(np.uint8), 5)
-        if self._options.closing_px:
-            side = self._options.closing_px
-            mask = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((side, side), np.uint8))
-        self._mask = mask
-        return analyse(mask, min_area_px=self._options.min_area_px)
-
-    @property
-    def mask(self) -> UInt8[Array, "height width"]:
-        """The cleaned mask."""
-        return self._mask
-
-    def remarks(self) -> tuple[Remark, ...]:
-        """Nothing: it does not say."""
-        return ()
-
-    def figures(self) -> dict[str, float]:
-        """Nothing: it chooses nothing."""
-        return {"min_area_px": self._options.min_area_px}
+    def raw(self, frame: Image) -> Bool[Array, "height width"]:
+        """Foreground, shadows not."""
+        return self._subtractor.apply(frame) > SHADOW
 
 
 class Mog2(OpenCvSubtractor):
